@@ -22,7 +22,7 @@ from ._finite import check_numbers
 from ._html import table
 from ._keys import CalibrationKeys, InstrumentKeys, Range
 from ._pickle import sealed
-from ._progress import Bar, parted
+from ._progress import shown_runs
 from ._project import of_case, of_file
 from ._simulation import _threads
 from ._tables import frame, read_table
@@ -323,15 +323,8 @@ class Calibration:
         work: Callable[[list[Path], int, Callable[[int, int], object]], Found],
     ) -> Found:
         """Do some work on records; errors do not name their files in a temporary folder."""
-        shown, watch = parted(progress)
         paths = [self._path(record, temporary.path / f"record {number}.csv") for number, record in enumerate(records, 1)]
-        with Bar(shown, None, "run", self.name) as bar:
-
-            def show(done: int, total: int) -> None:
-                if watch is not None:
-                    watch(done, total)
-                bar.show(done, total)
-
+        with shown_runs(progress, self.name) as show:
             try:
                 return work(paths, _threads(threads), show)
             except _slipfront.CaseError as error:

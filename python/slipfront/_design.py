@@ -19,7 +19,7 @@ from ._finite import check_numbers
 from ._html import numbers, picture, with_error
 from ._keys import DesignKeys
 from ._pickle import sealed
-from ._progress import Bar, parted
+from ._progress import shown_runs
 from ._project import of_case, of_file
 from ._simulation import _threads
 from ._temporary import TemporaryFolder
@@ -234,15 +234,8 @@ class Design:
         UserWarning
             When there is no verdict, because every tested texture failed.
         """
-        shown, watch = parted(progress)
         temporary = TemporaryFolder()
-        with Bar(shown, None, "run", self.name) as bar:
-
-            def show(done: int, total: int, best: float) -> None:
-                if watch is not None:
-                    watch(done, total, best)
-                bar.show(done, total, f"best {best:.4g}" if best == best else "verdict")
-
+        with shown_runs(progress, self.name, lambda best: f"best {best:.4g}" if best == best else "verdict") as show:
             path = temporary.path / self.name if folder is None else Path(folder)
             self._native.execute((path, force), runs, time, _threads(threads), show)
             results = DesignResults.read(path, None if folder is None else path)

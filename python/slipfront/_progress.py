@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import Any, TypeVar
 
@@ -72,3 +73,19 @@ class Bar:
             self._bar.close()
         elif self._text and self._last >= 0:
             print(file=sys.stderr)
+
+
+@contextlib.contextmanager
+def shown_runs(
+    progress: bool | Callable[..., object] | None, title: str, words: Callable[..., str] = lambda: ""
+) -> Iterator[Callable[..., None]]:
+    """A function that shows the numbers of finished runs and of all, and the words for further numbers."""
+    shown, watch = parted(progress)
+    with Bar(shown, None, "run", title) as bar:
+
+        def show(done: int, total: int, *further: Any) -> None:
+            if watch is not None:
+                watch(done, total, *further)
+            bar.show(done, total, words(*further))
+
+        yield show

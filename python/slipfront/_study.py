@@ -18,7 +18,7 @@ from ._finite import check_numbers
 from ._html import table
 from ._keys import StudyKeys
 from ._pickle import sealed
-from ._progress import Bar, parted
+from ._progress import shown_runs
 from ._project import of_case, of_file
 from ._run import Run
 from ._simulation import _threads, run
@@ -328,15 +328,8 @@ def executed(
 ) -> tuple[Results, dict[tuple[int, int, bool], list[float]], str | None]:
     """Make the runs that the folder of a study lacks, by default a temporary one. Return its results, the values of own quantities by run, and why
     no run has a value of the main quantity, if none has."""
-    shown, watch = parted(progress)
     temporary = TemporaryFolder()
-    with Bar(shown, None, "run", native.name) as bar:
-
-        def show(done: int, total: int, failed: int) -> None:
-            if watch is not None:
-                watch(done, total, failed)
-            bar.show(done, total, f"{failed} failed" if failed else "")
-
+    with shown_runs(progress, native.name, lambda failed: f"{failed} failed" if failed else "") as show:
         path = temporary.path / native.name if folder is None else Path(folder)
         values, failures, why = native.execute((path, force), _threads(threads), look, show)
         results = kind.read(path, native.axes, failures)

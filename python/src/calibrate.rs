@@ -1,15 +1,13 @@
 //! Calibrations: keys of a case from measured records.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
-use std::sync::{Mutex, PoisonError};
 
 use pyo3::prelude::*;
 use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationProgress, SampledRecord};
 use slipfront_study::StudyError;
 
-use crate::errors::{folder_error, study_error};
-use crate::process::{detached, on_pool};
+use crate::errors::folder_error;
+use crate::process::{detached_study, on_pool};
 
 /// A calibration file.
 #[pyclass(frozen, module = "slipfront._slipfront")]
@@ -22,22 +20,22 @@ impl Calibration {
     /// The calibration of a text called `name`; the files it names are relative to a folder.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
-        Self::of(py, || CalibrationFile::parse(text, name, name, &folder))
+        Self::from_file(py, || CalibrationFile::parse(text, name, name, &folder))
     }
 
     /// The calibration of a file, with overrides of its base of the form KEY=VALUE.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
-        Self::of(py, || {
+        Self::from_file(py, || {
             let mut file = CalibrationFile::load(&path)?;
-            file.set(&overrides)?;
+            file.project.set(&overrides)?;
             Ok(file)
         })
     }
 
     #[getter]
     fn name(&self) -> &str {
-        self.file.name()
+        &self.file.project.name
     }
 
     /// The columns of records.
@@ -59,7 +57,7 @@ impl Calibration {
     ) -> PyResult<Vec<String>> {
         let (folder, force) = folder;
         let (mut opened, notes) = self.open(py, &folder, force, training.as_deref(), &records, threads)?;
-        with_progress(py, threads, watch.as_ref(), |stop, show| {
+        on_pool(py, "work", threads, watch.as_ref(), numbers, |stop, show| {
             opened.find(None, stop, show)
         })?;
         Ok(notes)
@@ -77,7 +75,9 @@ impl Calibration {
         watch: Option<Py<PyAny>>,
     ) -> PyResult<(Vec<String>, String, Vec<String>)> {
         let (mut opened, notes) = self.open(py, &folder, false, training.as_deref(), &records, threads)?;
-        let found = with_progress(py, threads, watch.as_ref(), |stop, show| opened.check(stop, show))?;
+        let found = on_pool(py, "work", threads, watch.as_ref(), numbers, |stop, show| {
+            opened.check(stop, show)
+        })?;
         let tests = serde_json::to_string(&found).map_err(folder_error)?;
         Ok((found.reasons(), tests, notes))
     }
@@ -92,7 +92,7 @@ impl Calibration {
         threads: usize,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<String> {
-        let grids = detached(py, || match &until {
+        let grids = detached_study(py, || match &until {
             Some((until, values)) => self.file.planned(until, *values),
             None => Ok(self
                 .file
@@ -101,8 +101,7 @@ impl Calibration {
                 .map(SampledRecord::places)
                 .collect()),
         })?;
-        let grids = grids.map_err(|error| study_error(py, &error))?;
-        let plan = with_progress(py, threads, watch.as_ref(), |stop, show| {
+        let plan = on_pool(py, "work", threads, watch.as_ref(), numbers, |stop, show| {
             self.file.plan(grids, stop, show)
         })?;
         serde_json::to_string(&plan).map_err(folder_error)
@@ -110,14 +109,12 @@ impl Calibration {
 }
 
 impl Calibration {
-    fn of(
+    fn from_file(
         py: Python<'_>,
         read: impl FnOnce() -> Result<CalibrationFile, StudyError> + Send,
     ) -> PyResult<Self> {
-        let file = detached(py, read)?;
-        Ok(Self {
-            file: file.map_err(|error| study_error(py, &error))?,
-        })
+        let file = detached_study(py, read)?;
+        Ok(Self { file })
     }
 
     /// The results folder for these records, and sentences about their lines that were skipped.
@@ -130,36 +127,17 @@ impl Calibration {
         records: &[PathBuf],
         threads: usize,
     ) -> PyResult<(CalibrationFolder, Vec<String>)> {
-        let opened = detached(py, || {
+        detached_study(py, || {
             let records = self.file.read(records)?;
             self.file.check_memory(&records, threads)?;
             let notes = records.iter().flat_map(SampledRecord::notes).collect();
             let folder = CalibrationFolder::open(folder, training, &self.file, records, force)?;
             Ok((folder, notes))
-        })?;
-        opened.map_err(|error| study_error(py, &error))
+        })
     }
 }
 
-/// Does some work of a calibration, and reports its progress to `watch`.
-fn with_progress<T: Send>(
-    py: Python<'_>,
-    threads: usize,
-    watch: Option<&Py<PyAny>>,
-    work: impl FnOnce(&AtomicBool, &mut dyn FnMut(&CalibrationProgress)) -> Result<T, StudyError> + Send,
-) -> PyResult<T> {
-    let progress: Mutex<Option<CalibrationProgress>> = Mutex::new(None);
-    let work = |stop: &AtomicBool| {
-        work(stop, &mut |now| {
-            *progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(*now);
-        })
-    };
-    let mut show = |py: Python<'_>| {
-        let now = progress.lock().unwrap_or_else(PoisonError::into_inner).take();
-        match (watch, now) {
-            (Some(watch), Some(now)) => watch.call1(py, (now.runs, now.of)).map(drop),
-            _ => Ok(()),
-        }
-    };
-    on_pool(py, threads, work, &mut show)
+/// The numbers of a calibration's progress: finished runs, and all.
+fn numbers(now: &CalibrationProgress) -> (usize, usize) {
+    (now.runs, now.total)
 }

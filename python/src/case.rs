@@ -97,7 +97,7 @@ impl Case {
         };
         make(py, |watch| {
             let file = CaseFile::parse(text, name, &overrides)?;
-            SlipfrontCase::to_run_with(file, name, files, watch, Ranks::ALONE)
+            SlipfrontCase::to_run(file, name, files, watch, Ranks::ALONE)
         })
     }
 

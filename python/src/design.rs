@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 use std::time::Instant;
 
 use pyo3::prelude::*;
@@ -13,8 +12,7 @@ use slipfront_design::{
 };
 use slipfront_study::StudyError;
 
-use crate::errors::study_error;
-use crate::process::{detached, on_pool};
+use crate::process::{detached, detached_study, locked, on_pool};
 
 /// A design: its file, and the textures that were returned and reported.
 #[pyclass(frozen, module = "slipfront._slipfront")]
@@ -45,22 +43,22 @@ impl Design {
     /// The design of a text called `name`; the files it names are relative to a folder.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
-        Self::of(py, || DesignFile::parse(text, name, name, &folder))
+        Self::from_file(py, || DesignFile::parse(text, name, name, &folder))
     }
 
     /// The design of a file, with overrides of its base of the form KEY=VALUE.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
-        Self::of(py, || {
+        Self::from_file(py, || {
             let mut file = DesignFile::load(&path)?;
-            file.set(&overrides)?;
+            file.project.set(&overrides)?;
             Ok(file)
         })
     }
 
     #[getter]
     fn name(&self) -> &str {
-        self.file.name()
+        &self.file.project.name
     }
 
     /// Blocks along x and along y.
@@ -76,26 +74,20 @@ impl Design {
     }
 
     fn ask(&self, py: Python<'_>, n: usize) -> PyResult<Vec<Cow<'static, [u8]>>> {
-        let asked = detached(py, || {
-            self.search.lock().unwrap_or_else(PoisonError::into_inner).ask(n)
-        })?;
+        let asked = detached(py, || locked(&self.search).ask(n))?;
         Ok(asked.iter().map(|texture| bytes(texture)).collect())
     }
 
     fn tell(&self, py: Python<'_>, masks: Vec<PyBackedBytes>, losses: Vec<f64>) -> PyResult<()> {
         let rated = sets(&masks).into_iter().zip(losses).collect();
-        detached(py, || {
-            self.search
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .tell(rated);
-        })
+        detached(py, || locked(&self.search).tell(rated))
     }
 
     /// The best texture with a known loss, and its loss.
     fn best(&self) -> Option<(Cow<'static, [u8]>, f64)> {
-        let search = self.search.lock().unwrap_or_else(PoisonError::into_inner);
-        search.best().map(|(texture, loss)| (bytes(&texture), loss))
+        locked(&self.search)
+            .best()
+            .map(|(texture, loss)| (bytes(&texture), loss))
     }
 
     /// Losses of textures, distances from the target, on some surfaces; infinite, with the reason, for a
@@ -109,18 +101,22 @@ impl Design {
         threads: usize,
     ) -> PyResult<Vec<(f64, Option<String>)>> {
         let textures = sets(&masks);
-        let evaluate = |stop: &AtomicBool| {
-            let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-            let losses = self
-                .design
-                .losses(textures, surfaces, is_coarse, &mut known, stop)?;
-            let with_reasons = losses.into_iter().map(|loss| match loss {
-                Ok(loss) => (loss, None),
-                Err(why) => (f64::INFINITY, Some(why)),
-            });
-            Ok(with_reasons.collect())
-        };
-        on_pool(py, threads, evaluate, &mut |_| Ok(()))
+        on_pool(
+            py,
+            "work",
+            threads,
+            None,
+            |()| (),
+            |stop, _| {
+                let known = &mut *locked(&self.known);
+                let losses = self.design.losses(textures, surfaces, is_coarse, known, stop)?;
+                let with_reasons = losses.into_iter().map(|loss| match loss {
+                    Ok(loss) => (loss, None),
+                    Err(why) => (f64::INFINITY, Some(why)),
+                });
+                Ok(with_reasons.collect())
+            },
+        )
     }
 
     /// Searches in a folder, or continues there, and writes the results of the design; returns the verdict as
@@ -136,14 +132,13 @@ impl Design {
     ) -> PyResult<String> {
         let (folder, force) = folder;
         let runs = runs.unwrap_or(self.file.keys.runs as usize);
-        let opened = detached(py, || {
+        let mut opened = detached_study(py, || {
             self.file.check(runs, threads, seconds.is_some())?;
             DesignFolder::open(&folder, &self.file, force)
         })?;
-        let mut opened = opened.map_err(|error| study_error(py, &error))?;
-        let progress: Mutex<Option<SearchProgress>> = Mutex::new(None);
+        let numbers = |now: &SearchProgress| (now.runs, now.total, now.best);
         let began = Instant::now();
-        let search = |stop: &AtomicBool| {
+        on_pool(py, "work", threads, watch.as_ref(), numbers, |stop, show| {
             let share_of_time = || Bounds::share_of(began.elapsed().as_secs_f64(), seconds);
             let bounds = Bounds {
                 runs,
@@ -151,24 +146,17 @@ impl Design {
                 stop,
                 cut: None,
             };
-            opened.find(&bounds, &mut |now| {
-                *progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(now.clone());
-            })
-        };
-        let mut show = |py: Python<'_>| {
-            let now = progress.lock().unwrap_or_else(PoisonError::into_inner).take();
-            match (&watch, now) {
-                (Some(watch), Some(now)) => watch.call1(py, (now.runs, now.of, now.best)).map(drop),
-                _ => Ok(()),
-            }
-        };
-        on_pool(py, threads, search, &mut show)
+            opened.find(&bounds, show)
+        })
     }
 }
 
 impl Design {
-    fn of(py: Python<'_>, read: impl FnOnce() -> Result<DesignFile, StudyError> + Send) -> PyResult<Self> {
-        let made = detached(py, || {
+    fn from_file(
+        py: Python<'_>,
+        read: impl FnOnce() -> Result<DesignFile, StudyError> + Send,
+    ) -> PyResult<Self> {
+        detached_study(py, || {
             let file = read()?;
             let design = file.design()?;
             let search = Mutex::new(design.open_search());
@@ -178,7 +166,6 @@ impl Design {
                 search,
                 known: Mutex::default(),
             })
-        })?;
-        made.map_err(|error| study_error(py, &error))
+        })
     }
 }

@@ -1,10 +1,12 @@
 //! The device that computes the steps of runs.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use slipfront::device::{Device, DeviceError};
+
+use crate::process::locked;
 
 /// Opens a device by its name, or gives the one that was opened before; none for the processor.
 pub(crate) fn device(name: &str) -> PyResult<Option<Arc<dyn Device>>> {
@@ -12,7 +14,7 @@ pub(crate) fn device(name: &str) -> PyResult<Option<Arc<dyn Device>>> {
     match name {
         "cpu" => Ok(None),
         "gpu" => {
-            let mut opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut opened = locked(&OPENED);
             if opened.is_none() {
                 *opened = Some(slipfront_cli::open_gpu().map_err(device_error)?);
             }

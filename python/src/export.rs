@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use slipfront_calibrate::CALIBRATIONS;
 use slipfront_design::DESIGNS;
 use slipfront_run::export::{Attribution, Author, ExportError, Exported, Licence, bibtex, cff, write_crate};
-use slipfront_study::{ExportFolderError, exported};
+use slipfront_study::{StudyError, exported};
 
 use crate::errors::{folder_error, in_words_of_python};
 use crate::process::detached;
@@ -52,7 +52,7 @@ pub(crate) fn citation(
     }
 }
 
-fn read(folders: &[PathBuf]) -> Result<Vec<Exported>, ExportFolderError> {
+fn read(folders: &[PathBuf]) -> Result<Vec<Exported>, StudyError> {
     let read = |folder: &PathBuf| exported(folder, &[DESIGNS, CALIBRATIONS]);
     folders.iter().map(read).collect()
 }
@@ -72,9 +72,9 @@ fn parsed<T: FromStr<Err = String>>(argument: &str, text: Option<&str>) -> PyRes
 }
 
 /// An argument that is missing, or a folder that cannot be exported.
-fn export_error(error: ExportFolderError) -> PyErr {
+fn export_error(error: StudyError) -> PyErr {
     use ExportError::{NeedsAuthor, NeedsFolder};
-    if matches!(error, ExportFolderError::Results(NeedsAuthor | NeedsFolder)) {
+    if matches!(error, StudyError::Export(NeedsAuthor | NeedsFolder)) {
         PyValueError::new_err(in_words_of_python(error))
     } else {
         folder_error(error)

@@ -77,7 +77,7 @@ pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
 /// Compares a folder with its manifest, or with its records.
 #[pyfunction]
 pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-    let verdict = detached(py, || {
+    let check = detached(py, || {
         verify_folder(
             &folder,
             &[DESIGNS, CALIBRATIONS],
@@ -86,7 +86,7 @@ pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
         )
     })?
     .map_err(folder_error)?;
-    match verdict.differences.as_slice() {
+    match check.differences.as_slice() {
         [] => Ok(()),
         differences => Err(FolderError::new_err(differences.join("\n"))),
     }
@@ -153,5 +153,5 @@ pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> Py
         let foreign = || folder_error("its checkpoint does not belong to its case");
         resumed.ok_or_else(foreign)
     })??;
-    Ok((case, Simulation::of(running)?))
+    Ok((case, Simulation::start(running)?))
 }

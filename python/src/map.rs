@@ -3,18 +3,17 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use slipfront_case::case::Case as SlipfrontCase;
-use slipfront_run::device_summaries::device_summaries;
+use slipfront_run::device::device_summaries;
 use slipfront_run::run_summary::run_summary_unless;
 use slipfront_run::summary::summary_json;
 
 use crate::case::Case;
 use crate::device::{self, device_error};
-use crate::errors::{RunError, folder_error};
-use crate::process::{detached, watched};
+use crate::errors::RunError;
+use crate::process::{detached, on_pool};
 
 /// Runs cases, one on each thread at a time, or all on a device, and returns `summary.json` of each in their
 /// order. A signal ends all of them. A run that diverges ends those after it, so that the error is always
@@ -27,38 +26,28 @@ pub(crate) fn run_summaries(
     device: &str,
 ) -> PyResult<Vec<String>> {
     let cases: Vec<Arc<SlipfrontCase>> = cases.iter().map(|case| Arc::clone(&case.get().0)).collect();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(folder_error)?;
     let device = detached(py, || device::device(device))??;
-    let (stop, first_diverged) = (AtomicBool::new(false), AtomicUsize::new(usize::MAX));
-    let run = |index: usize| {
-        let ends = || stop.load(Ordering::Relaxed) || first_diverged.load(Ordering::Relaxed) < index;
-        let ended = run_summary_unless(&cases[index], &ends)?;
-        if ended.is_err() {
-            first_diverged.fetch_min(index, Ordering::Relaxed);
+    let first_diverged = AtomicUsize::new(usize::MAX);
+    let run_all = |stop: &AtomicBool| {
+        let stops = || stop.load(Ordering::Relaxed);
+        let run = |index: usize| {
+            let ends = || stops() || first_diverged.load(Ordering::Relaxed) < index;
+            let ended = run_summary_unless(&cases[index], &ends)?;
+            if ended.is_err() {
+                first_diverged.fetch_min(index, Ordering::Relaxed);
+            }
+            Some(ended)
+        };
+        match &device {
+            Some(device) => device_summaries(&cases, &**device, &stops),
+            None => Ok((0..cases.len())
+                .into_par_iter()
+                .with_max_len(1)
+                .map(run)
+                .collect()),
         }
-        Some(ended)
     };
-    let run_all = || match &device {
-        Some(device) => device_summaries(&cases, &**device, &|| stop.load(Ordering::Relaxed)),
-        None => Ok((0..cases.len())
-            .into_par_iter()
-            .with_max_len(1)
-            .map(run)
-            .collect()),
-    };
-    let mut signal = None;
-    let look = || {
-        signal = signal
-            .take()
-            .or_else(|| Python::attach(|py| py.check_signals().err()));
-        stop.store(signal.is_some(), Ordering::Relaxed);
-    };
-    let ended = detached(py, || watched(|| pool.install(run_all), look))?;
-    if let Some(signal) = signal {
-        return Err(signal);
-    }
-    let ended = ended.ok_or_else(|| PyRuntimeError::new_err("a fault of the program ended the runs"))?;
+    let ended = on_pool(py, "runs", threads, None, |()| (), |stop, _| Ok(run_all(stop)))?;
     let ended = ended.map_err(device_error)?;
     let named = ended.into_iter().zip(&cases).enumerate();
     let summaries = named.filter_map(|(index, (ended, case))| {

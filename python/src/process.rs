@@ -5,8 +5,10 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use pyo3::call::PyCallArgs;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use slipfront_study::StudyError;
@@ -44,9 +46,17 @@ pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send)
     Ok(py.detach(work))
 }
 
+/// Does some work on a study, a design or a calibration while other Python threads continue.
+pub(crate) fn detached_study<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce() -> Result<T, StudyError> + Send,
+) -> PyResult<T> {
+    detached(py, work)?.map_err(|error| study_error(py, &error))
+}
+
 /// Does `work` on another thread, and checks for signals on this one, which receives them; none if the work
 /// panicked.
-pub(crate) fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl FnMut()) -> Option<T> {
+fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl FnMut()) -> Option<T> {
     std::thread::scope(|scope| {
         let (done, result) = mpsc::channel();
         let worker = scope.spawn(move || done.send(work()).is_ok());
@@ -60,33 +70,54 @@ pub(crate) fn watched<T: Send>(work: impl FnOnce() -> T + Send, mut look: impl F
     })
 }
 
-/// Does `work` on a pool of threads; this thread checks for signals and shows progress. An exception of
-/// either ends the work.
-pub(crate) fn on_pool<T: Send>(
+/// Does `work`, which has a name in errors, on a pool of threads. This thread checks for signals, and calls
+/// `watch` with the numbers of the latest progress that the work has reported. An exception ends the work.
+pub(crate) fn on_pool<T, P, N>(
     py: Python<'_>,
+    name: &str,
     threads: usize,
-    work: impl FnOnce(&AtomicBool) -> Result<T, StudyError> + Send,
-    show: &mut (dyn FnMut(Python<'_>) -> PyResult<()> + Send),
-) -> PyResult<T> {
+    watch: Option<&Py<PyAny>>,
+    numbers: fn(&P) -> N,
+    work: impl FnOnce(&AtomicBool, &mut dyn FnMut(&P)) -> Result<T, StudyError> + Send,
+) -> PyResult<T>
+where
+    T: Send,
+    P: Clone + Send,
+    N: for<'py> PyCallArgs<'py>,
+{
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(folder_error)?;
     let stop = AtomicBool::new(false);
+    let progress: Mutex<Option<P>> = Mutex::new(None);
+    let report = &mut |now: &P| *locked(&progress) = Some(now.clone());
     let mut raised = None;
     let mut look = || {
-        let shown = Python::attach(|py| py.check_signals().and_then(|()| show(py)));
+        let now = locked(&progress).take();
+        let shown = Python::attach(|py| {
+            py.check_signals()?;
+            match (watch, now) {
+                (Some(watch), Some(now)) => watch.call1(py, numbers(&now)).map(drop),
+                _ => Ok(()),
+            }
+        });
         if let Err(error) = shown {
             raised.get_or_insert(error);
             stop.store(true, Ordering::Relaxed);
         }
     };
     let ended = detached(py, || {
-        let ended = watched(|| pool.install(|| work(&stop)), &mut look);
+        let ended = watched(|| pool.install(|| work(&stop, report)), &mut look);
         look();
         ended
     })?;
     if let Some(error) = raised {
         return Err(error);
     }
-    let ended = ended.ok_or_else(|| PyRuntimeError::new_err("a fault of the program ended the work"))?;
-    ended.map_err(|error| study_error(py, &error))
+    let fault = || PyRuntimeError::new_err(format!("a fault of the program ended the {name}"));
+    ended.ok_or_else(fault)?.map_err(|error| study_error(py, &error))
+}
+
+/// Locks a mutex, also after a panic of another thread.
+pub(crate) fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -50,12 +50,13 @@ impl RunData {
 
     /// The arrays of `fields.nc`.
     fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        fields(py, results::fields_of(&self.case, &self.record))
+        let frames = self.record.frames.clone();
+        fields(py, results::fields_of(&self.case, &self.record, frames))
     }
 
     /// The arrays of `kymograph.nc`.
     fn kymograph<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        kymograph(py, KymographData::of(&self.record.kymograph, &self.case))
+        kymograph(py, KymographData::new(&self.record.kymograph, &self.case))
     }
 
     /// The tables of observers that only some runs have.

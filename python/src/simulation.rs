@@ -16,7 +16,7 @@ use slipfront_case::field_info::field_named;
 use slipfront_run::checkpoint::hash_of;
 use slipfront_run::checksum::{verified, with_checksum};
 use slipfront_run::columns::Columns;
-use slipfront_run::device_summaries::refusal_of_run;
+use slipfront_run::device::refusal_of_run;
 use slipfront_run::fields::FieldFrame;
 use slipfront_run::running::{RunState, Running};
 use slipfront_run::series::{SeriesRow, counts};
@@ -37,12 +37,9 @@ pub(crate) struct Simulation {
     started: jiff::Timestamp,
 }
 
-/// Bytes before the state of a checkpoint: its length.
-const LENGTH_BYTES: usize = 8;
-
 impl Simulation {
     /// A simulation of a run that has recorded its current instant: a checkpoint needs a recorded instant.
-    pub(crate) fn of(mut running: Running) -> PyResult<Self> {
+    pub(crate) fn start(mut running: Running) -> PyResult<Self> {
         running.advance(0).map_err(run_error)?;
         Ok(Self {
             running: Some(running),
@@ -95,7 +92,7 @@ impl Simulation {
             device,
             ..Execution::on_threads(threads)
         };
-        Self::of(detached(py, || Running::start(&case.0, None, execution))?)
+        Self::start(detached(py, || Running::start(&case.0, None, execution))?)
     }
 
     /// The run continued under another case; the position of the drive over each block, x and y in m; the
@@ -113,7 +110,7 @@ impl Simulation {
         let row = detached(py, || running.end_of_leg())?.map_err(run_error)?;
         let counted = counts(&row, &running.case().scales, &running.case().model);
         let drive = vectors(py, leg.drive_m, running)?;
-        Ok((Self::of(leg.running)?, drive, leg.steps, counted))
+        Ok((Self::start(leg.running)?, drive, leg.steps, counted))
     }
 
     /// Takes at most `steps` steps, for 50 ms or a little longer; returns their number, and whether the run
@@ -208,18 +205,19 @@ impl Simulation {
     /// State from which the run continues bit-identically.
     fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let running = self.running()?;
-        let state = postcard::to_stdvec(&running.state());
-        let state = state.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-        let mut bytes = (state.len() as u64).to_le_bytes().to_vec();
-        bytes.extend(state);
-        let columns_from = bytes.len();
-        let written = running.write_columns(|place, part| {
-            let from = columns_from + place as usize;
-            bytes.resize(bytes.len().max(from + part.len()), 0);
-            bytes[from..from + part.len()].copy_from_slice(part);
+        let mut columns = Vec::new();
+        running.write_columns(|place, part| {
+            let (from, until) = (place as usize, place as usize + part.len());
+            columns.resize(columns.len().max(until), 0);
+            columns[from..until].copy_from_slice(part);
             Ok::<(), PyErr>(())
-        });
-        written.map(|()| PyBytes::new(py, &with_checksum(&context(running.case()), &bytes)))
+        })?;
+        let contents = postcard::to_stdvec(&(running.state(), columns));
+        let contents = contents.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        Ok(PyBytes::new(
+            py,
+            &with_checksum(&context(running.case()), &contents),
+        ))
     }
 
     /// The run of this case, continued from a checkpoint.
@@ -233,10 +231,8 @@ impl Simulation {
             ))
         };
         let contents = verified(&context(&case.0), checkpoint).ok_or_else(refused)?;
-        let (length, rest) = contents.split_at_checked(LENGTH_BYTES).ok_or_else(refused)?;
-        let length = u64::from_le_bytes(length.try_into()?) as usize;
-        let (state, columns) = rest.split_at_checked(length).ok_or_else(refused)?;
-        let state: RunState = postcard::from_bytes(state).map_err(|_| refused())?;
+        let parts = postcard::from_bytes::<(RunState, &[u8])>(contents);
+        let (state, columns) = parts.map_err(|_| refused())?;
         let needed = state
             .columns(&case.0)
             .iter()
@@ -255,7 +251,7 @@ impl Simulation {
             Running::resume(&case.0, state, Execution::on_threads(threads), read)
         })?;
         let running = running.ok().flatten().ok_or_else(refused)?;
-        Self::of(running)
+        Self::start(running)
     }
 
     /// Results of the run, once it has ended; the simulation cannot be used afterwards.

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use jiff::SignedDuration;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use slipfront_case::case::Case as SlipfrontCase;
@@ -19,8 +19,7 @@ use slipfront_study::{
 };
 
 use crate::case::{Case, make};
-use crate::errors::{folder_error, study_error};
-use crate::process::{detached, watched};
+use crate::process::{detached_study, locked, on_pool};
 use crate::run_data::RunData;
 
 /// A study with a valid case at every point.
@@ -41,8 +40,11 @@ type OwnValues = BTreeMap<(usize, usize, bool), Vec<f64>>;
 type Executed = (OwnValues, Vec<(String, String)>, Option<String>);
 
 impl Study {
-    fn of(py: Python<'_>, read: impl FnOnce() -> Result<StudyFile, StudyError> + Send) -> PyResult<Self> {
-        let planned = detached(py, || {
+    fn from_file(
+        py: Python<'_>,
+        read: impl FnOnce() -> Result<StudyFile, StudyError> + Send,
+    ) -> PyResult<Self> {
+        detached_study(py, || {
             let file = read()?;
             let plan = Plan::new(&file, None)?;
             Ok(Self {
@@ -50,8 +52,7 @@ impl Study {
                 plan,
                 is_of_meshes: false,
             })
-        })?;
-        planned.map_err(|error| study_error(py, &error))
+        })
     }
 
     /// Writes tables and pictures, and the comparison of meshes.
@@ -80,7 +81,7 @@ impl Study {
     /// The study of a file, with overrides of its base of the form KEY=VALUE.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
-        Self::of(py, || {
+        Self::from_file(py, || {
             let mut file = StudyFile::load(&path)?;
             file.set(&overrides)?;
             Ok(file)
@@ -90,20 +91,19 @@ impl Study {
     /// The study of a text called `name`; the files it names are relative to a folder.
     #[staticmethod]
     fn parse(py: Python<'_>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
-        Self::of(py, || StudyFile::parse(text, name, name, &folder))
+        Self::from_file(py, || StudyFile::parse(text, name, name, &folder))
     }
 
     /// The study in a folder of results.
     #[staticmethod]
     fn of_folder(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
-        Self::of(py, || study::study_of(&folder))
+        Self::from_file(py, || study::study_of(&folder))
     }
 
     /// The study of a case on several meshes.
     #[staticmethod]
     fn on_meshes(py: Python<'_>, case: &Case, levels: i64, replicates: Option<i64>) -> PyResult<Self> {
-        let made = detached(py, || MeshStudy::new(&case.0, levels, replicates))?;
-        let MeshStudy { file, plan } = made.map_err(|error| study_error(py, &error))?;
+        let MeshStudy { file, plan } = detached_study(py, || MeshStudy::new(&case.0, levels, replicates))?;
         Ok(Self {
             file,
             plan,
@@ -123,8 +123,7 @@ impl Study {
             memory_gb: max_memory,
             time: max_time.map(parse_time).transpose()?,
         };
-        let checked = detached(py, || limits.check(&self.plan, threads))?;
-        checked.map_err(|error| study_error(py, &error))
+        detached_study(py, || limits.check(&self.plan, threads))
     }
 
     #[getter]
@@ -197,7 +196,7 @@ impl Study {
 
     /// Statistics of a quantity at a point, under the names of `points.csv`.
     fn statistics(&self, values: Vec<f64>) -> Vec<(&'static str, f64)> {
-        let sample = Sample::of(&values, self.plan.settings.confidence());
+        let sample = Sample::from_values(&values, self.plan.settings.confidence());
         let found = sample.map(|sample| {
             let [low, high] = sample.interval().unwrap_or([f64::NAN; 2]);
             vec![
@@ -226,44 +225,39 @@ impl Study {
         watch: Option<Py<PyAny>>,
     ) -> PyResult<Executed> {
         let (folder, force) = folder;
-        let failed = |error: StudyError| Python::attach(|py| study_error(py, &error));
-        let opened = detached(py, || {
+        let opened = detached_study(py, || {
             self.plan.check_memory(threads)?;
             let opened = StudyFolder::open(&folder, &self.file, None, force)?;
             opened.check_disk(&self.plan)?;
             Ok(opened)
         })?;
-        let opened = opened.map_err(failed)?;
         let plan = self.plan.clone().reading_copies(&opened.study);
-        let shared = Shared::default();
-        let look_at_run = |run: RunKey, case: &Arc<SlipfrontCase>, record: &running::RunData| {
-            let Some(look) = &look else { return true };
-            shared.look(look, self.key(run), case, record)
-        };
-        let execute = || {
-            let watch = &mut |now: &Progress| *locked(&shared.progress) = Some(now.clone());
-            // One more thread of the pool waits for the others.
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads + 1).build();
-            let (records, folder, stop) = (&opened.records, opened.path(), &shared.stop);
-            pool.map(|pool| {
-                pool.install(|| study::execute_and_look(&plan, records, folder, stop, &look_at_run, watch))
-            })
-        };
-        let results = detached(py, || {
-            // The calling thread receives signals, and shows progress.
-            let results = watched(execute, || shared.show(watch.as_ref()));
-            shared.show(watch.as_ref());
-            results
-        })?;
-        if let Some(error) = locked(&shared.raised).take() {
+        let (own, raised) = (Mutex::new(OwnValues::new()), Mutex::new(None));
+        let numbers = |now: &Progress| (now.done, now.total, now.failed);
+        // One more thread of the pool waits for the others.
+        let results = on_pool(py, "study", threads + 1, watch.as_ref(), numbers, |stop, show| {
+            let look_at_run = |run: RunKey, case: &Arc<SlipfrontCase>, record: &running::RunData| {
+                let Some(look) = &look else { return true };
+                match own_values(look, self.key(run), case, record) {
+                    Ok(values) => {
+                        locked(&own).insert(self.key(run), values);
+                        true
+                    }
+                    Err(error) => {
+                        locked(&raised).get_or_insert(error);
+                        stop.store(true, Ordering::Relaxed);
+                        false
+                    }
+                }
+            };
+            study::execute_and_look(&plan, &opened.records, opened.path(), stop, &look_at_run, show)
+        });
+        if let Some(error) = locked(&raised).take() {
             return Err(error);
         }
-        let results = match results {
-            Some(Ok(results)) => results.map_err(failed)?,
-            Some(Err(error)) => return Err(folder_error(error)),
-            None => return Err(PyRuntimeError::new_err("a fault of the program ended the study")),
-        };
-        detached(py, || self.write(&plan, &results, &opened, &shared.stop))?.map_err(failed)?;
+        let results = results?;
+        let never = AtomicBool::new(false);
+        detached_study(py, || self.write(&plan, &results, &opened, &never))?;
         let describe = |(run, reason): (RunKey, &str)| {
             let place = plan.describe(&plan.points[run.point]);
             (format!("{place}, replicate {}", run.replicate), reason.to_owned())
@@ -271,7 +265,7 @@ impl Study {
         let failures: Vec<_> = results.failures().map(describe).collect();
         let why = results.expect_values(&plan).err().filter(|_| failures.is_empty());
         let why = why.map(|error| error.to_string());
-        Ok((std::mem::take(&mut *locked(&shared.own)), failures, why))
+        Ok((std::mem::take(&mut *locked(&own)), failures, why))
     }
 }
 
@@ -284,66 +278,21 @@ fn parse_time(text: &str) -> PyResult<SignedDuration> {
     })
 }
 
-/// State that the threads of a study share with the calling thread.
-#[derive(Default)]
-struct Shared {
-    stop: AtomicBool,
-    own: Mutex<OwnValues>,
-    /// The first exception, with which the study ends.
-    raised: Mutex<Option<PyErr>>,
-    progress: Mutex<Option<Progress>>,
-}
-
-fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-impl Shared {
-    fn raise(&self, error: PyErr) {
-        locked(&self.raised).get_or_insert(error);
-        self.stop.store(true, Ordering::Relaxed);
-    }
-
-    /// Takes the values of the user's own quantities of a run; returns whether there were any.
-    fn look(
-        &self,
-        look: &Py<PyAny>,
-        key: (usize, usize, bool),
-        case: &Arc<SlipfrontCase>,
-        record: &running::RunData,
-    ) -> bool {
-        let record = RunData {
-            case: Arc::clone(case),
-            record: record.clone(),
-            started: clock::now(),
-            processors: Processors::threads(1),
-        };
-        let values = Python::attach(|py| {
-            let values = look.call1(py, (Case(Arc::clone(case)), record, key))?;
-            values.extract::<Vec<f64>>(py)
-        });
-        match values {
-            Ok(values) => locked(&self.own).insert(key, values),
-            Err(error) => {
-                self.raise(error);
-                return false;
-            }
-        };
-        true
-    }
-
-    /// Checks for signals, and shows progress.
-    fn show(&self, watch: Option<&Py<PyAny>>) {
-        let now = locked(&self.progress).take();
-        let shown = Python::attach(|py| {
-            py.check_signals()?;
-            match (watch, now) {
-                (Some(watch), Some(now)) => watch.call1(py, (now.done, now.total, now.failed)).map(drop),
-                _ => Ok(()),
-            }
-        });
-        if let Err(error) = shown {
-            self.raise(error);
-        }
-    }
+/// Values of the user's own quantities of a run.
+fn own_values(
+    look: &Py<PyAny>,
+    key: (usize, usize, bool),
+    case: &Arc<SlipfrontCase>,
+    record: &running::RunData,
+) -> PyResult<Vec<f64>> {
+    let record = RunData {
+        case: Arc::clone(case),
+        record: record.clone(),
+        started: clock::now(),
+        processors: Processors::threads(1),
+    };
+    Python::attach(|py| {
+        let values = look.call1(py, (Case(Arc::clone(case)), record, key))?;
+        values.extract::<Vec<f64>>(py)
+    })
 }

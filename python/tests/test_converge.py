@@ -75,7 +75,7 @@ def test_every_quantity_has_its_values_errors_and_sentence(sheet: Path) -> None:
     # The second mesh is that of the case.
     assert friction.values[1] == sf.run(sheet, progress=False).static_friction_star
     assert friction.scatter == (None, None, None)
-    # As Verdict::on, of differences that fall by more than second order: a quarter of the first, of which a
+    # As MeshVerdict::on, of differences that fall by more than second order: a quarter of the first, of which a
     # third is left.
     first, last = friction.values[1] - friction.values[0], friction.values[2] - friction.values[1]
     assert abs(last) < abs(first) / 4 and friction.order == 2

@@ -214,7 +214,7 @@ impl Trained {
         let margin = if set_up.instrument.is_some() { 0.0 } else { 0.1 };
         let truth: Vec<f64> = truth.iter().map(|u| margin + (1.0 - 2.0 * margin) * u).collect();
         let (measured, filtered_by) = record_of(experiment, change, &truth, record)?;
-        let clipped = Clipped::of(0, &measured);
+        let clipped = Clipped::find(0, &measured);
         let values = [set_up.conditions[0].grid.record(&measured)];
         let estimate = calibration.estimate(&values);
         let points = calibration.sample(&estimate, PREDICTED);
@@ -448,7 +448,7 @@ fn experiment(
     spacing: f64,
 ) -> Result<Experiment, Box<dyn Error>> {
     let x: Vec<f64> = (0..count).map(|k| k as f64 * spacing).collect();
-    let grid = SamplePoints::of(&measured(x, vec![0.0; count])).ok_or("no places")?;
+    let grid = SamplePoints::from_record(&measured(x, vec![0.0; count])).ok_or("no places")?;
     let conditions = vec![Conditions {
         overrides: Vec::<Override>::new(),
         grid,

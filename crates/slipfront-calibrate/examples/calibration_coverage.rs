@@ -124,7 +124,7 @@ fn set_up() -> Result<(SetUp, f64), Box<dyn Error>> {
     ];
     let x: Vec<f64> = (0..VALUES).map(|k| k as f64 * time).collect();
     let record = MeasuredRecord::new(x.clone(), x, Measure::Time, Measure::Coefficient);
-    let grid = SamplePoints::of(&record).ok_or("no grid")?;
+    let grid = SamplePoints::from_record(&record).ok_or("no grid")?;
     let conditions = vec![Conditions {
         overrides: Vec::<Override>::new(),
         grid,

@@ -3,13 +3,13 @@
 use rayon::prelude::*;
 use slipfront_regression::{Prediction, Regression};
 
-use crate::intervals::Distribution;
+use crate::distribution::Distribution;
+use crate::features::quantiles;
 use crate::misfit::{Check, Misfit};
-use crate::normals::{Stream, normals};
 use crate::sample_points::SamplePoints;
-use crate::scaling::{Scaling, summaries_of, units_of_friction};
+use crate::scaling::{Scaling, features_of, units_of_friction};
 use crate::set_up::Curves;
-use crate::summaries::quantiles;
+use crate::synthetic_noise::{Stream, normals};
 use crate::training::Training;
 
 /// Width of an interval of 90 %, as a share of the range, above which the record does not determine the
@@ -21,10 +21,10 @@ pub(crate) const UNDETERMINED: f64 = 0.8;
 const OF_A_PAIR: f64 = 0.8;
 const WIDTH_OF_A_PAIR: f64 = 0.2;
 
-/// Regressions of the unknowns on the summaries of a training, at one level of noise.
+/// Regressions of the unknowns on the features of a training, at one level of noise.
 #[derive(Clone, Debug)]
 pub struct Calibration {
-    /// Units of the friction of the records in their summaries.
+    /// Units of the friction of the records in their features.
     units: Vec<f64>,
     scaling: Scaling,
     /// Values of the unknowns in the training runs, as shares of the ranges: for every unknown those of all
@@ -79,10 +79,10 @@ impl Calibration {
                 let noisy = records.map(|(record, (curve, grid))| {
                     grid.noisy(curve, noise, normals(Stream::Noise, run, record))
                 });
-                summaries_of(&noisy.collect::<Vec<_>>(), &units)
+                features_of(&noisy.collect::<Vec<_>>(), &units)
             })
             .collect();
-        let scaling = Scaling::of(&rows);
+        let scaling = Scaling::from_rows(&rows);
         let table: Vec<f64> = rows.iter().flat_map(|row| scaling.scaled(row)).collect();
         let unknowns = training.points.first().map_or(0, Vec::len);
         let truths: Vec<Vec<f64>> = (0..unknowns)
@@ -108,15 +108,15 @@ impl Calibration {
 
     /// Estimates the unknowns from records, each returned by [`SamplePoints::record`].
     pub fn estimate(&self, records: &[Vec<f64>]) -> Estimate {
-        let summaries = self.scaling.scaled(&summaries_of(records, &self.units));
+        let features = self.scaling.scaled(&features_of(records, &self.units));
         let predictions: Vec<_> = self
             .regressions
             .iter()
-            .map(|regression| regression.predict(&summaries))
+            .map(|regression| regression.predict(&features))
             .collect();
         let all = self.regressions.iter().zip(&self.truths).zip(&predictions);
         let distributions: Vec<Distribution> = all
-            .map(|((regression, truth), &prediction)| Distribution::of(regression, truth, prediction))
+            .map(|((regression, truth), &prediction)| Distribution::new(regression, truth, prediction))
             .collect();
         let widths: Vec<f64> = distributions
             .iter()
@@ -127,10 +127,10 @@ impl Calibration {
             .collect();
         let undetermined = (0..widths.len()).filter(|&j| widths[j] > UNDETERMINED).collect();
         Estimate {
-            pairs: self.pairs(&summaries, &widths),
+            pairs: self.pairs(&features, &widths),
             distributions,
             undetermined,
-            misfit: self.check.misfit(records, &summaries),
+            misfit: self.check.misfit(records, &features),
             likeness: self.likeness(&predictions),
             predictions,
         }
@@ -215,9 +215,9 @@ impl Calibration {
 
     /// Widths of the intervals of 90 % of every unknown for records like these, as shares of its range: the
     /// means over the most similar training runs, each of them left out.
-    pub(crate) fn widths(&self, of: &Estimate) -> Vec<f64> {
-        let mut alike: Vec<usize> = (0..of.likeness.len()).collect();
-        alike.sort_by(|&a, &b| of.likeness[b].total_cmp(&of.likeness[a]));
+    pub(crate) fn widths(&self, estimate: &Estimate) -> Vec<f64> {
+        let mut alike: Vec<usize> = (0..estimate.likeness.len()).collect();
+        alike.sort_by(|&a, &b| estimate.likeness[b].total_cmp(&estimate.likeness[a]));
         alike.truncate(LIKE_AT_LEAST as usize);
         self.widths_of(&alike)
     }
@@ -236,7 +236,7 @@ impl Calibration {
             .map(|(regression, truth)| {
                 let widths = runs.iter().map(|&run| {
                     let [low, high] =
-                        Distribution::of(regression, truth, regression.left_out(run)).interval(0.9);
+                        Distribution::new(regression, truth, regression.left_out(run)).interval(0.9);
                     high - low
                 });
                 widths.sum::<f64>() / runs.len() as f64
@@ -245,14 +245,14 @@ impl Calibration {
     }
 
     /// Pairs of unknowns with correlated errors in training runs like the record.
-    fn pairs(&self, summaries: &[f64], widths: &[f64]) -> Vec<Pair> {
+    fn pairs(&self, features: &[f64], widths: &[f64]) -> Vec<Pair> {
         let wide: Vec<usize> = (0..widths.len())
             .filter(|&j| widths[j] > WIDTH_OF_A_PAIR)
             .collect();
         let mut pairs = Vec::new();
         for (k, &one) in wide.iter().enumerate() {
             for &other in &wide[k + 1..] {
-                let weights = self.regressions[one].likeness(summaries, &self.regressions[other]);
+                let weights = self.regressions[one].likeness(features, &self.regressions[other]);
                 let errors = |j: usize| {
                     let (truths, found) = (&self.truths[j], &self.regressions[j].predictions);
                     truths.iter().zip(found).map(|(truth, found)| truth - found)
@@ -301,10 +301,10 @@ mod tests {
         grid_of(Measure::Coefficient)
     }
 
-    fn grid_of(of: Measure) -> SamplePoints {
+    fn grid_of(quantity: Measure) -> SamplePoints {
         let x: Vec<f64> = (0..100).map(f64::from).collect();
-        let record = MeasuredRecord::new(x.clone(), x, Measure::Time, of);
-        SamplePoints::of(&record).unwrap()
+        let record = MeasuredRecord::new(x.clone(), x, Measure::Time, quantity);
+        SamplePoints::from_record(&record).unwrap()
     }
 
     fn calibration() -> Calibration {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use slipfront_run::measured::MeasuredRecord;
 
-use crate::bandwidth::noise;
+use crate::record_noise::noise;
 
 /// Least number of equal values that are not chance, also as a multiple of the number at the next value:
 /// values of a record become rarer towards the largest one.
@@ -30,7 +30,7 @@ pub struct Clipped {
 impl Clipped {
     /// The values of largest magnitude in the record of this number, if more of them are equal than by
     /// chance.
-    pub fn of(record: usize, measured: &MeasuredRecord) -> Option<Self> {
+    pub fn find(record: usize, measured: &MeasuredRecord) -> Option<Self> {
         let mut sorted: Vec<f64> = measured.y.iter().map(|y| y.abs()).collect();
         sorted.sort_by(|one, other| other.total_cmp(one));
         let (largest, least) = (*sorted.first()?, *sorted.last()?);
@@ -54,13 +54,13 @@ mod tests {
     use slipfront_run::measured::Measure;
 
     use super::*;
-    use crate::normals::{Stream, normals};
+    use crate::synthetic_noise::{Stream, normals};
 
     /// Values with noise of 0.01, as a record.
     fn clipped(values: impl Iterator<Item = f64>) -> Option<Clipped> {
         let y: Vec<f64> = values.collect();
         let x = (0..y.len()).map(|k| 1e-3 * k as f64).collect();
-        Clipped::of(0, &MeasuredRecord::new(x, y, Measure::Time, Measure::Coefficient))
+        Clipped::find(0, &MeasuredRecord::new(x, y, Measure::Time, Measure::Coefficient))
     }
 
     fn noisy() -> impl Iterator<Item = f64> {

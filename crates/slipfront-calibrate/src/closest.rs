@@ -4,16 +4,16 @@
 use serde::Serialize;
 use slipfront_regression::least_squares;
 use slipfront_study::StudyError;
-use slipfront_study::adaptation::Adaptation;
+use slipfront_study::adaptive_search::Adaptation;
 use slipfront_study::draws::Draws;
 use slipfront_study::statistics::mean;
 
-use crate::normals::{Stream, draws};
-use crate::predicted::apart;
+use crate::features::deviation;
+use crate::predicted::rms_difference;
 use crate::progress::CalibrationStage;
 use crate::runs::{RunMaker, Runs};
 use crate::set_up::{Curves, MOST_HALVINGS, SetUp};
-use crate::summaries::deviation;
+use crate::synthetic_noise::{Stream, draws};
 
 /// Number of the surface of the first run; without random coefficients all surfaces are equal.
 const FIRST_SURFACE: u64 = 1;
@@ -99,7 +99,7 @@ impl Closest {
     }
 
     /// Summary of the residuals of every record, in units of the noise, over this share of the records.
-    fn of(differences: &[Vec<f64>], share: f64, halvings: u32) -> Self {
+    fn from_residuals(differences: &[Vec<f64>], share: f64, halvings: u32) -> Self {
         let all = differences.iter().flatten();
         let count = all.clone().count() as f64;
         let squares: f64 = all.map(|e| e * e).sum();
@@ -169,7 +169,7 @@ pub fn closest(
     // The phases of slips may still shift by the remaining error of the time step.
     while found.closest.is_nearly_passed() && set_up.halvings < MOST_HALVINGS {
         set_up = set_up.halved(1);
-        let whole = Part::of(&set_up, 1.0);
+        let whole = Part::new(&set_up, 1.0);
         let begin = search.judge(&whole, vec![found.numbers])?;
         found = search.descend(&whole, begin)?;
     }
@@ -194,7 +194,7 @@ fn fine_enough(
     let is_same = |(one, other): (&Curves, &Curves)| {
         let mut records = one.iter().zip(other).zip(&set_up.conditions);
         records.all(|((one, other), conditions)| {
-            apart(one, other) < STEP_ERROR * conditions.grid.deviation(other, noise)
+            rms_difference(one, other) < STEP_ERROR * conditions.grid.deviation(other, noise)
         })
     };
     for times in 0..SEARCHED_HALVINGS {
@@ -252,14 +252,14 @@ impl Search<'_, '_> {
         let mut adaptation = Adaptation::new(vec![0.0; self.begin.len()], 1.0);
         let mut draws = draws(Stream::Closest, number, 0);
         let [first, longer @ ..] = PARTS;
-        let part = Part::of(set_up, first);
+        let part = Part::new(set_up, first);
         let begin = self.generation(&part, &mut adaptation, &mut draws)?;
         let mut best = self.over(&part, begin, &mut adaptation, &mut draws)?;
         for share in longer {
             if best.closest.noise_ratio > NEAR {
                 break;
             }
-            let part = Part::of(set_up, share);
+            let part = Part::new(set_up, share);
             let begin = self.judge(&part, vec![best.numbers])?;
             best = self.over(&part, begin, &mut adaptation, &mut draws)?;
         }
@@ -367,7 +367,7 @@ impl Search<'_, '_> {
         let judged = curves.iter().zip(numbers).map(|(curves, numbers)| {
             let differences = self.differences(curves);
             Found {
-                closest: Closest::of(&differences, part.share, part.set_up.halvings),
+                closest: Closest::from_residuals(&differences, part.share, part.set_up.halvings),
                 numbers,
                 differences,
             }
@@ -408,7 +408,7 @@ struct Part {
 impl Part {
     /// The first part of the records, with its own time step: the step shifts the phase at every slip, so a
     /// part with fewer slips can have coarser steps than the whole.
-    fn of(set_up: &SetUp, share: f64) -> Self {
+    fn new(set_up: &SetUp, share: f64) -> Self {
         let set_up = SetUp {
             halvings: set_up.halvings.saturating_sub(((1.0 / share) as u32).ilog2()),
             ..set_up.beginning(share)
@@ -428,25 +428,25 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::normals::normals;
+    use crate::synthetic_noise::normals;
 
     #[test]
     fn noise_passes_and_a_wave_does_not() {
         let noise: Vec<f64> = normals(Stream::Noise, 1, 0).take(4000).collect();
-        let plain = Closest::of(std::slice::from_ref(&noise), 1.0, 0);
+        let plain = Closest::from_residuals(std::slice::from_ref(&noise), 1.0, 0);
         assert!(
             !plain.is_refused() && (plain.noise_ratio - 1.0).abs() < 0.1,
             "{plain:?}"
         );
         let more: Vec<f64> = noise.iter().map(|e| 1.5 * e).collect();
-        assert!(Closest::of(&[more], 1.0, 0).is_noisier());
+        assert!(Closest::from_residuals(&[more], 1.0, 0).is_noisier());
         // The wave has a mean square of 0.32, which raises the correlation to 0.24 and the residuals to 1.15
         // times the noise.
         let wave = noise
             .iter()
             .enumerate()
             .map(|(i, e)| e + 0.8 * (0.05 * i as f64).sin());
-        let waved = Closest::of(&[wave.collect()], 1.0, 0);
+        let waved = Closest::from_residuals(&[wave.collect()], 1.0, 0);
         assert!(waved.is_correlated() && !waved.is_noisier(), "{waved:?}");
     }
 }

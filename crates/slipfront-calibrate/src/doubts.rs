@@ -34,7 +34,7 @@ pub(crate) fn doubts(record: &MeasuredRecord, grid: &SamplePoints, noise: f64, p
         )];
     }
     let (first, largest) = (values[0], values.iter().copied().fold(values[0], f64::max));
-    let unit = grid.along().unit();
+    let unit = grid.along.unit();
     let bound = STILL * noise * mean * grid.noise_share();
     let rises = |share: f64| {
         let crossed = values
@@ -54,7 +54,7 @@ pub(crate) fn doubts(record: &MeasuredRecord, grid: &SamplePoints, noise: f64, p
         let zero = match first.abs() > bound {
             true => format!(
                 ", and `y_offset` removes the {} there",
-                with_si_prefix(first, grid.friction().unit())
+                with_si_prefix(first, grid.quantity.unit())
             ),
             false => String::new(),
         };
@@ -93,7 +93,7 @@ mod tests {
         let noise = |k: usize| noise * ((k * 7919 % 200) as f64 / 100.0 - 1.0);
         let y = x.iter().enumerate().map(|(k, x)| curve(*x) + noise(k)).collect();
         let record = MeasuredRecord::new(x, y, Measure::Time, Measure::Coefficient);
-        let grid = SamplePoints::of(&record).unwrap();
+        let grid = SamplePoints::from_record(&record).unwrap();
         doubts(&record, &grid, 0.01, Path::new("r.csv"))
     }
 

@@ -17,9 +17,9 @@ use slipfront_run::run_curve::steps_to;
 use toml::Table;
 
 use crate::doubts::doubts;
+use crate::features::{MIN_VALUES, n_features};
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Conditions, MOST_HALVINGS, SetUp};
-use crate::summaries::{MIN_VALUES, n_summaries};
 use slipfront_study::StudyError;
 use slipfront_study::Unknown;
 use slipfront_study::axis::overrides;
@@ -67,7 +67,8 @@ const MAX_STEPS: u64 = 10_000_000;
 pub struct CalibrationFile {
     /// Keys of the file.
     pub keys: CalibrationKeys,
-    pub(crate) project: ProjectFile,
+    /// The base case, and the text of the file.
+    pub project: ProjectFile,
 }
 
 key_rows! {
@@ -227,23 +228,10 @@ impl CalibrationFile {
         Ok(file)
     }
 
-    /// Sets keys of the base case, each by a string such as `drive.v_star=0.05`.
-    ///
-    /// # Errors
-    /// When a string is not an override.
-    pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
-        self.project.set(overrides)
-    }
-
     /// The calibration with files in memory that the base case names.
     pub(crate) fn with_files(mut self, in_memory: FilesInMemory) -> Self {
         self.project.base.in_memory = in_memory;
         self
-    }
-
-    /// Name of the calibration and of its results.
-    pub fn name(&self) -> &str {
-        &self.project.name
     }
 
     fn check(&self) -> Result<(), CaseError> {
@@ -370,7 +358,7 @@ impl CalibrationFile {
         let measured = columns.parse(&bytes, path, along);
         let mut measured = measured.map_err(|sentence| self.project.error("x", sentence))?;
         measured.correct(&self.correction(number, along)?);
-        let grid = SamplePoints::of(&measured).ok_or_else(|| {
+        let grid = SamplePoints::from_record(&measured).ok_or_else(|| {
             let sentence = format!(
                 "{} has {} values: a record needs at least {MIN_VALUES}, not all at the same position",
                 path.display(),
@@ -431,7 +419,7 @@ impl CalibrationFile {
             let instrument = set_up.instrument(&middle, &set_up.conditions[number]);
             let instrument = instrument.map_err(|error| in_instrument(error.to_string()))?;
             let range = instrument.as_ref().and_then(Instrument::range);
-            set_up.conditions[number].grid.bound_by(range);
+            set_up.conditions[number].grid.range = range;
         }
         for conditions in &set_up.conditions {
             for unknown in 0..middle.len() {
@@ -446,7 +434,7 @@ impl CalibrationFile {
                     if has_memory && case.model.drive.is_held() {
                         return Err(in_instrument(HELD_DRIVE.to_owned()).into());
                     }
-                    let steps = steps_to(&case, conditions.grid.along(), conditions.grid.end());
+                    let steps = steps_to(&case, conditions.grid.along, conditions.grid.end());
                     if steps > MAX_STEPS {
                         return Err(self.too_long(&case, steps, &conditions.grid).into());
                     }
@@ -500,7 +488,7 @@ impl CalibrationFile {
         // and one of a further experiment.
         let regressions = 1 + set_up.unknowns.len();
         let records = set_up.conditions.len() + usize::from(!further.is_empty());
-        let kept = 10 * (regressions + 1) * runs * records * n_summaries();
+        let kept = 10 * (regressions + 1) * runs * records * n_features();
         // Curves are held by the journal, by a training and by copies of both.
         let numbers = (4 * values + kept) as f64;
         let regression = NUMBER * (runs.max(LEAST) as f64).powi(2);
@@ -546,7 +534,7 @@ impl CalibrationFile {
             "{} ends at {}, before the drive begins: {places} count from the beginning of the drive, at 0. Add a number to all {places} of the \
              record by `shift`, so that the drive begins at 0",
             path.display(),
-            with_si_prefix(grid.end(), grid.along().unit())
+            with_si_prefix(grid.end(), grid.along.unit())
         );
         self.project.error("x", sentence)
     }
@@ -558,7 +546,7 @@ impl CalibrationFile {
             let sentence = format!(
                 "a record begins at {begin} {0} and ends at {1} {0}, while the drive begins at 0: `shift = \"{2} {0}\"`, besides the shift \
                  that it may have, begins it at 0",
-                grid.along().unit(),
+                grid.along.unit(),
                 grid.end(),
                 -begin
             );
@@ -645,9 +633,9 @@ mod tests {
         // A kernel matrix of all runs, factorised in place; for a regression of each unknown and one more.
         assert_eq!(found.pieces[1], (8.0 * 2000.0 * 2000.0, 3));
         let no_memory = |needed, available| StudyError::CalibrationMemory { needed, available };
-        assert!(found.compare(2, found.of(2), no_memory).is_ok());
+        assert!(found.compare(2, found.on_threads(2), no_memory).is_ok());
         assert!(matches!(
-            found.compare(8, found.of(2), no_memory),
+            found.compare(8, found.on_threads(2), no_memory),
             Err(StudyError::Memory {
                 threads: 8,
                 fit: 2,
@@ -655,7 +643,7 @@ mod tests {
             })
         ));
         let said = found
-            .compare(2, found.of(1) - 1.0, no_memory)
+            .compare(2, found.on_threads(1) - 1.0, no_memory)
             .unwrap_err()
             .to_string();
         assert!(

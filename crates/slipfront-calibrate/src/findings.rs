@@ -1,11 +1,13 @@
 //! Results of a calibration, as numbers.
 
 use serde::Serialize;
+use slipfront_base::number_format::four_digits;
 
 use crate::calibration::Estimate;
-use crate::intervals::Distribution;
+use crate::distribution::Distribution;
 use crate::record_check::RecordCheck;
 use slipfront_study::Unknown;
+use slipfront_study::unknown::with_unit;
 
 /// Probability of the intervals.
 pub(crate) const CONFIDENCE: f64 = 0.9;
@@ -102,7 +104,7 @@ pub(crate) struct Further {
 }
 
 impl UnknownEstimate {
-    pub(crate) fn of(unknown: &Unknown, estimate: &Estimate, number: usize) -> Self {
+    pub(crate) fn new(unknown: &Unknown, estimate: &Estimate, number: usize) -> Self {
         let (median, interval) = in_its_unit(unknown, &estimate.distributions[number]);
         Self {
             key: unknown.key().to_owned(),
@@ -136,16 +138,7 @@ impl UnknownEstimate {
 
     /// A value of the unknown with its unit, as a string.
     pub(crate) fn text(&self, value: f64) -> String {
-        with_unit(value, self.unit.as_deref())
-    }
-}
-
-/// A value with its unit, if it has one.
-fn with_unit(value: f64, unit: Option<&str>) -> String {
-    let number = slipfront_base::number_format::four_digits(value);
-    match unit {
-        Some(unit) => format!("{number} {unit}"),
-        None => number,
+        with_unit(four_digits(value), self.unit.as_deref())
     }
 }
 

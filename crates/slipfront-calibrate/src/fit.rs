@@ -2,7 +2,6 @@
 
 use slipfront_run::measured::Measure;
 
-use crate::bandwidth::{fastest_swing, missing_noise, noise_share};
 use crate::calibration::{Calibration, Estimate, Pair};
 use crate::clipping::Clipped;
 use crate::closest::closest;
@@ -10,15 +9,16 @@ use crate::file::{CalibrationFile, CalibrationKeys, SampledRecord};
 use crate::findings::{
     CoupledUnknowns, Findings, Further, InstrumentFindings, OnFinerBlocks, UnknownEstimate,
 };
-use crate::normals::{Stream, normals};
-use crate::predicted::{Band, PREDICTED, Predicted};
+use crate::predicted::{FrictionBand, PREDICTED, Predicted};
 use crate::progress::CalibrationStage;
 use crate::record_check::RecordCheck;
+use crate::record_noise::{fastest_swing, missing_noise, noise_share};
 use crate::runs::RunMaker;
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Curves, SetUp};
+use crate::synthetic_noise::{Stream, normals};
 use crate::training::Training;
-use slipfront_study::{StudyError, TrainingError};
+use slipfront_study::StudyError;
 
 /// Number of runs at another time step.
 const AT_OTHER_STEP: usize = 40;
@@ -34,7 +34,7 @@ struct FittedRecords {
 }
 
 impl FittedRecords {
-    fn of(training: &Training, set_up: &SetUp, records: &[SampledRecord], noise: f64) -> Self {
+    fn new(training: &Training, set_up: &SetUp, records: &[SampledRecord], noise: f64) -> Self {
         let curves = records.iter().map(|record| record.grid.record(&record.measured));
         let curves: Vec<Vec<f64>> = curves.collect();
         let calibration = Calibration::new(training, &set_up.grids(), noise);
@@ -75,7 +75,7 @@ impl FittedRecords {
         });
         let clipped = || {
             let mut records = records.iter().enumerate();
-            records.find_map(|(number, record)| Clipped::of(number, &record.measured))
+            records.find_map(|(number, record)| Clipped::find(number, &record.measured))
         };
         let check = RecordCheck {
             clipped: if set_up.has_range() { None } else { clipped() },
@@ -101,7 +101,7 @@ pub(crate) struct Found {
     /// Friction of every record at the points of the comparison.
     pub(crate) records: Curves,
     /// Band of the friction of the calibrated model for every record.
-    pub(crate) bands: Vec<Band>,
+    pub(crate) bands: Vec<FrictionBand>,
     /// Points of the ranges that are drawn from the estimate.
     pub(crate) sample: Vec<Vec<f64>>,
 }
@@ -138,19 +138,19 @@ impl Fit {
         } else {
             0
         };
-        let of = runs * (1 + further.len()) + finer_runs + PREDICTED + AT_OTHER_STEP;
-        maker.expect(of);
+        let total = runs * (1 + further.len()) + finer_runs + PREDICTED + AT_OTHER_STEP;
+        maker.total = total;
         let training = Training::run(maker, CalibrationStage::Training, set_up, runs)?;
-        let fitted = FittedRecords::of(&training, set_up, records, noise);
+        let fitted = FittedRecords::new(&training, set_up, records, noise);
         let estimate = &fitted.estimate;
         let unknowns = set_up.unknowns.iter().enumerate();
         let mut unknowns: Vec<UnknownEstimate> = unknowns
-            .map(|(number, unknown)| UnknownEstimate::of(unknown, estimate, number))
+            .map(|(number, unknown)| UnknownEstimate::new(unknown, estimate, number))
             .collect();
         let finer = match finer {
             Ok(Some(finer)) => {
                 let training = Training::run(maker, CalibrationStage::FinerBlocks, &finer, finer_runs)?;
-                let there = FittedRecords::of(&training, &finer, records, noise).estimate;
+                let there = FittedRecords::new(&training, &finer, records, noise).estimate;
                 let found = finer.unknowns.iter().zip(&there.distributions);
                 for (estimate_of_unknown, (unknown, found)) in unknowns.iter_mut().zip(found) {
                     estimate_of_unknown.hold_against(unknown, found);
@@ -165,15 +165,15 @@ impl Fit {
         let bands = predicted.bands();
         // If the calibrated model already runs at a finer step, the runs to compare with have the step of the
         // training.
-        let halvings = predicted.halvings();
-        let points = predicted.points()[..AT_OTHER_STEP].to_vec();
+        let halvings = predicted.halvings;
+        let points = predicted.points[..AT_OTHER_STEP].to_vec();
         let other = if halvings > 0 {
             set_up.clone()
         } else {
             set_up.halved(1)
         };
         let other = Predicted::run(maker, CalibrationStage::OtherStep, &other, points, noise)?;
-        let (mut coarse, mut fine) = (&predicted.curves()[..AT_OTHER_STEP], other.curves());
+        let (mut coarse, mut fine) = (&predicted.curves[..AT_OTHER_STEP], other.curves.as_slice());
         if halvings > 0 {
             (coarse, fine) = (fine, coarse);
         }
@@ -213,9 +213,9 @@ impl Fit {
     pub(crate) fn check(&self, maker: &mut RunMaker) -> Result<RecordCheck, StudyError> {
         let CalibrationKeys { runs, noise, .. } = self.file.keys;
         let Self { set_up, records, .. } = self;
-        maker.expect(runs as usize + PREDICTED);
+        maker.total = runs as usize + PREDICTED;
         let training = Training::run(maker, CalibrationStage::Training, set_up, runs as usize)?;
-        let fitted = FittedRecords::of(&training, set_up, records, noise);
+        let fitted = FittedRecords::new(&training, set_up, records, noise);
         let (_, check) = fitted.check(set_up, records, noise, maker)?;
         Ok(check)
     }
@@ -225,10 +225,7 @@ impl Fit {
         let set_up = &self.set_up;
         let middle = set_up.middle();
         let instrument = set_up.instrument(&middle, &set_up.conditions[0]);
-        let instrument = instrument.map_err(|source| TrainingError::Instrument {
-            point: set_up.point(&middle),
-            source,
-        })?;
+        let instrument = instrument.map_err(|error| set_up.error_at(&middle, error))?;
         let records = self.records.iter();
         let of_times = records.filter(|record| record.measured.along == Measure::Time);
         Ok(InstrumentFindings {

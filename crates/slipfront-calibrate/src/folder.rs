@@ -19,7 +19,7 @@ use crate::report::{FOUND, Report};
 use crate::runs::{KeptRuns, RunMaker};
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::{
-    Checksums, Derivation, Given, Others, ResultFiles, notes_of_use, read_numbers,
+    Checksums, Given, Others, Project, ResultFiles, notes_of_use, read_numbers,
 };
 
 /// A results folder, with the runs that were kept in it.
@@ -32,10 +32,12 @@ pub struct CalibrationFolder {
 }
 
 /// Folders of calibrations.
-pub const CALIBRATIONS: Derivation = Derivation {
+pub const CALIBRATIONS: Project = Project {
     kind: &CALIBRATION,
     no_pictures: &[],
-    find_again,
+    beside: &[],
+    verify_beside: None,
+    find_again: Some(find_again),
 };
 
 /// Calibrates again in another folder from the runs in the journal.
@@ -88,7 +90,7 @@ impl CalibrationFolder {
         };
         let files = given.place(&CALIBRATION, path, force)?;
         let name = path.join(CALIBRATION.file).display().to_string();
-        let file = CalibrationFile::parse(&given.text, &name, file.name(), path)?;
+        let file = CalibrationFile::parse(&given.text, &name, &file.project.name, path)?;
         Ok(Self {
             path: path.to_owned(),
             files,
@@ -138,7 +140,7 @@ impl CalibrationFolder {
 
     /// Number of runs that are known.
     pub fn n_kept(&self) -> usize {
-        self.kept.count()
+        self.kept.known.len()
     }
 
     /// Trains, fits the records, runs blocks of half the size and further experiments, writes the findings,
@@ -152,10 +154,11 @@ impl CalibrationFolder {
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&CalibrationProgress),
     ) -> Result<String, StudyError> {
-        let maker = RunMaker::new(stop, 0, watch).with(&mut self.kept);
-        let found = self.fit.find(&mut maker.on_device(device))?;
+        let mut maker = RunMaker::new(stop, 0, watch);
+        (maker.kept, maker.device) = (Some(&mut self.kept), device);
+        let found = self.fit.find(&mut maker)?;
         let mut batch = self.files.begin();
-        let text = Report::of(&self.fit.set_up, &found.findings).write(&found, &mut batch)?;
+        let text = Report::new(&self.fit.set_up, &found.findings).write(&found, &mut batch)?;
         batch.place(Others::Go, self.kept.listed()?)?;
         Ok(text)
     }
@@ -170,8 +173,9 @@ impl CalibrationFolder {
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&CalibrationProgress),
     ) -> Result<RecordCheck, StudyError> {
-        self.fit
-            .check(&mut RunMaker::new(stop, 0, watch).with(&mut self.kept))
+        let mut maker = RunMaker::new(stop, 0, watch);
+        maker.kept = Some(&mut self.kept);
+        self.fit.check(&mut maker)
     }
 }
 

@@ -74,17 +74,16 @@ impl CalibrationInMemory {
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&CalibrationProgress),
     ) -> Result<Outcome, StudyError> {
-        let mut maker = RunMaker::new(stop, 0, watch)
-            .with(&mut self.kept)
-            .elsewhere(is_elsewhere);
+        let mut maker = RunMaker::new(stop, 0, watch);
+        (maker.kept, maker.is_elsewhere) = (Some(&mut self.kept), is_elsewhere);
         let found = match self.fit.find(&mut maker) {
             Err(StudyError::Interrupted) => {
-                let wanted = maker.into_wanted().ok_or(StudyError::Interrupted);
+                let wanted = maker.wanted.ok_or(StudyError::Interrupted);
                 return wanted.map(Outcome::Wants);
             }
             found => found?,
         };
-        let report = Report::of(&self.fit.set_up, &found.findings);
+        let report = Report::new(&self.fit.set_up, &found.findings);
         let set = report.set();
         Ok(Outcome::Found(CalibrationResults {
             // Structs of texts and numbers: serialisation cannot fail.
@@ -107,7 +106,7 @@ impl CalibrationInMemory {
 
     /// Adds a needed run that was made elsewhere.
     pub fn add(&mut self, wanted: WantedRun, made: Curves) {
-        self.kept.add(wanted, made);
+        self.kept.known.insert(wanted.id, made);
     }
 }
 

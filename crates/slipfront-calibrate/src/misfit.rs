@@ -4,11 +4,11 @@ use rayon::prelude::*;
 use serde::Serialize;
 use slipfront_regression::{Regression, squared_distances};
 
-use crate::intervals::Distribution;
-use crate::normals::{Stream, draws, normals};
+use crate::distribution::Distribution;
+use crate::features::level;
 use crate::sample_points::SamplePoints;
-use crate::scaling::{Scaling, summaries_of};
-use crate::summaries::level;
+use crate::scaling::{Scaling, features_of};
+use crate::synthetic_noise::{Stream, draws, normals};
 use crate::training::Training;
 
 /// Largest drift in training: friction rises or falls by this share of itself over the record.
@@ -27,7 +27,7 @@ pub(crate) struct Check {
     drift: Regression,
     /// The drift of every training run, from 0 for the largest fall to 1 for the largest rise.
     drifts: Vec<f64>,
-    /// Scaled summaries of the training runs.
+    /// Scaled features of the training runs.
     table: Vec<f64>,
     /// Distance of a run to the other runs that only few runs exceed.
     far: f64,
@@ -44,11 +44,11 @@ pub struct Misfit {
     pub drift: [f64; 2],
     /// Whether the interval excludes 0.
     pub has_drift: bool,
-    /// Distance of the summaries from those of the nearest training runs, over the distance that 5 training
+    /// Distance of the features from those of the nearest training runs, over the distance that 5 training
     /// runs in 1000 exceed.
     pub distance: f64,
     /// Mean of the second half of the record that is farthest outside of the means of the training runs, and
-    /// the least and the largest of these means. Scaled summaries do not show it, since they limit large
+    /// the least and the largest of these means. Scaled features do not show it, since they limit large
     /// distances.
     pub level: [f64; 3],
 }
@@ -90,7 +90,7 @@ fn drift_at(share: f64) -> f64 {
 
 impl Check {
     /// Learns to recognise drift from the training runs, each with its own drift. `grids` and `units` are the
-    /// sample points of every record, and the unit of friction in its summaries.
+    /// sample points of every record, and the unit of friction in its features.
     pub(crate) fn learn(
         training: &Training,
         grids: &[SamplePoints],
@@ -118,7 +118,7 @@ impl Check {
                     (drifting, level(&record_of(curve)))
                 });
                 let (drifting, levels): (Vec<_>, Vec<_>) = records.unzip();
-                (scaling.scaled(&summaries_of(&drifting, units)), levels)
+                (scaling.scaled(&features_of(&drifting, units)), levels)
             })
             .unzip();
         let drift = Regression::learn(&rows.concat(), &drifts);
@@ -138,11 +138,11 @@ impl Check {
         }
     }
 
-    /// Tests of records with these scaled summaries.
-    pub(crate) fn misfit(&self, records: &[Vec<f64>], summaries: &[f64]) -> Misfit {
-        let drift = Distribution::of(&self.drift, &self.drifts, self.drift.predict(summaries));
+    /// Tests of records with these scaled features.
+    pub(crate) fn misfit(&self, records: &[Vec<f64>], features: &[f64]) -> Misfit {
+        let drift = Distribution::new(&self.drift, &self.drifts, self.drift.predict(features));
         let drift = drift.interval(1.0 - REFUSED_BY_DRIFT).map(drift_at);
-        let row = squared_distances(summaries, &self.table, summaries.len());
+        let row = squared_distances(features, &self.table, features.len());
         let levels = records.iter().zip(&self.levels);
         let levels = levels.map(|(record, &[low, high])| [level(record), low, high]);
         Misfit {

@@ -12,12 +12,12 @@ use slipfront_study::work_memory::WorkMemory;
 use slipfront_study::{StudyError, Unknown};
 
 use crate::calibration::{Calibration, UNDETERMINED};
+use crate::features::MIN_VALUES;
 use crate::file::{CalibrationFile, SampledRecord, expect_memory};
 use crate::progress::{CalibrationProgress, CalibrationStage};
 use crate::runs::RunMaker;
 use crate::sample_points::SamplePoints;
 use crate::set_up::{Conditions, SetUp};
-use crate::summaries::MIN_VALUES;
 use crate::training::Training;
 
 /// Number of runs of an experiment.

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 use serde::Serialize;
 use slipfront_regression::distance_from;
 
-use crate::normals::{Stream, normals};
+use crate::features::{checked, checked_groups, level, quantiles};
 use crate::progress::CalibrationStage;
 use crate::runs::{RunMaker, Runs};
 use crate::set_up::{Curves, SetUp};
-use crate::summaries::{checked, checked_groups, level, quantiles};
+use crate::synthetic_noise::{Stream, normals};
 use slipfront_study::StudyError;
 
 /// Number of the surface of the first run; those of training count from 1.
@@ -31,17 +31,17 @@ const NEAREST: usize = 3;
 #[derive(Clone, Debug)]
 pub struct Predicted {
     /// Points of the ranges, for every run.
-    points: Vec<Vec<f64>>,
+    pub(crate) points: Vec<Vec<f64>>,
     /// Friction of every record, for every run.
-    curves: Vec<Curves>,
+    pub(crate) curves: Vec<Curves>,
     /// Number of halvings of the time step of the case.
-    halvings: u32,
+    pub(crate) halvings: u32,
 }
 
 /// Friction of the calibrated model for a record, noise included: the central 90 % of the runs at every
 /// sample point, and their median.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Band {
+pub(crate) struct FrictionBand {
     pub(crate) low: Vec<f64>,
     pub(crate) median: Vec<f64>,
     pub(crate) high: Vec<f64>,
@@ -66,8 +66,8 @@ impl Comparison {
     }
 }
 
-impl Band {
-    fn of(curves: &[&Vec<f64>]) -> Self {
+impl FrictionBand {
+    fn from_curves(curves: &[&Vec<f64>]) -> Self {
         let places = curves.first().map_or(0, |curve| curve.len());
         let lines = (0..places).map(|place| {
             let values: Vec<f64> = curves.iter().map(|curve| curve[place]).collect();
@@ -118,29 +118,14 @@ impl Predicted {
         })
     }
 
-    /// Points of the ranges, for every run.
-    pub(crate) fn points(&self) -> &[Vec<f64>] {
-        &self.points
-    }
-
-    /// Number of halvings of the time step of the case.
-    pub(crate) fn halvings(&self) -> u32 {
-        self.halvings
-    }
-
     /// The bands of all records.
-    pub(crate) fn bands(&self) -> Vec<Band> {
+    pub(crate) fn bands(&self) -> Vec<FrictionBand> {
         let records = self.curves.first().map_or(0, Vec::len);
         let band = |record: usize| {
             let of_record: Vec<&Vec<f64>> = self.curves.iter().map(|curves| &curves[record]).collect();
-            Band::of(&of_record)
+            FrictionBand::from_curves(&of_record)
         };
         (0..records).map(band).collect()
-    }
-
-    /// Friction of every record, for every run.
-    pub(crate) fn curves(&self) -> &[Curves] {
-        &self.curves
     }
 
     /// Compares records with the runs, by numbers that are mostly not used in the estimate.
@@ -185,7 +170,9 @@ impl Predicted {
                 .iter()
                 .enumerate()
                 .filter(|(run, _)| Some(*run) != but_for);
-            let mut distances: Vec<f64> = others.map(|(_, other)| apart(curve, &other[record])).collect();
+            let mut distances: Vec<f64> = others
+                .map(|(_, other)| rms_difference(curve, &other[record]))
+                .collect();
             distances.sort_by(f64::total_cmp);
             let nearest = distances.iter().take(NEAREST).sum::<f64>() / NEAREST as f64;
             let size = level(curve).abs().max(f64::MIN_POSITIVE);
@@ -199,7 +186,7 @@ impl Predicted {
 const CURVE: &str = "curve as a whole";
 
 /// Root mean square of the difference of two curves.
-pub(crate) fn apart(one: &[f64], other: &[f64]) -> f64 {
+pub(crate) fn rms_difference(one: &[f64], other: &[f64]) -> f64 {
     let squares: f64 = one.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum();
     (squares / one.len() as f64).sqrt()
 }
@@ -211,7 +198,7 @@ mod tests {
     #[test]
     fn a_band_holds_nine_tenths() {
         let curves: Vec<Vec<f64>> = (0..=100).map(|k| vec![f64::from(k), 7.0]).collect();
-        let band = Band::of(&curves.iter().collect::<Vec<_>>());
+        let band = FrictionBand::from_curves(&curves.iter().collect::<Vec<_>>());
         assert_eq!((band.low[0], band.median[0], band.high[0]), (5.0, 50.0, 95.0));
         assert_eq!(band.holds_percent(&[4.0, 7.0]), 50.0);
     }

@@ -38,5 +38,5 @@ pub struct CalibrationProgress {
     /// Number of runs of this call that have ended.
     pub runs: usize,
     /// Number of all runs of this call, as far as it is known.
-    pub of: usize,
+    pub total: usize,
 }

@@ -6,18 +6,18 @@ use slipfront_base::number_format::{count, four_digits, in_print, si_prefix, wit
 use slipfront_base::text::{COLUMNS, note, wrapped};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Override;
-use slipfront_plot::{Picture, PictureError, PictureSize, Response, Responses};
+use slipfront_plot::{Estimate, Picture, PictureError, PictureSize, Response, Responses};
 use slipfront_run::measured::Measure;
 use slipfront_run::names::CASE;
 
 use crate::findings::{Findings, InstrumentFindings, OnFinerBlocks, UnknownEstimate};
 use crate::fit::Found;
-use crate::predicted::{Band, PREDICTED};
+use crate::predicted::{FrictionBand, PREDICTED};
 use crate::record_check::at_step;
 use crate::set_up::{Conditions, SetUp};
-use slipfront_study::StudyError;
 use slipfront_study::project_folder::Batch;
 use slipfront_study::text_table::table;
+use slipfront_study::{StudyError, Unknown};
 
 /// The findings, as numbers and as a text.
 pub(crate) const FOUND: [&str; 2] = ["calibration.json", "calibration.txt"];
@@ -32,7 +32,7 @@ pub(crate) struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    pub(crate) const fn of(set_up: &'a SetUp, findings: &'a Findings) -> Self {
+    pub(crate) const fn new(set_up: &'a SetUp, findings: &'a Findings) -> Self {
         Self { set_up, findings }
     }
 
@@ -98,14 +98,14 @@ impl<'a> Report<'a> {
 fn write_record(
     number: usize,
     record: &[f64],
-    band: &Band,
+    band: &FrictionBand,
     conditions: &Conditions,
     batch: &mut Batch,
 ) -> Result<(), StudyError> {
     let grid = &conditions.grid;
     let places = grid.places();
     let name = format!("band-{number}");
-    let [x_name, y_name] = [grid.along(), grid.friction()].map(|measure| title(measure, measure.unit()));
+    let [x_name, y_name] = [grid.along, grid.quantity].map(|measure| title(measure, measure.unit()));
     batch.write(&format!("{name}.csv"), |to| {
         let mut table = csv::Writer::from_writer(to);
         table.write_record([&x_name, &y_name, "model 5 %", "model median", "model 95 %"])?;
@@ -115,7 +115,7 @@ fn write_record(
         }
         table.flush()
     })?;
-    let measures = [grid.along(), grid.friction()];
+    let measures = [grid.along, grid.quantity];
     batch.draw(&name, |size| picture(&places, record, band, measures, size))
 }
 
@@ -123,10 +123,7 @@ fn write_record(
 fn write_sample(set_up: &SetUp, sample: &[Vec<f64>], to: &mut impl Write) -> Result<(), csv::Error> {
     let unknowns = &set_up.unknowns;
     let mut table = csv::Writer::from_writer(to);
-    table.write_record(unknowns.iter().map(|unknown| match unknown.unit() {
-        Some(unit) => format!("{} ({unit})", unknown.key()),
-        None => unknown.key().to_owned(),
-    }))?;
+    table.write_record(unknowns.iter().map(Unknown::column))?;
     for point in sample {
         let values = unknowns.iter().zip(point);
         table.write_record(values.map(|(unknown, &share)| unknown.at(share).to_string()))?;
@@ -149,7 +146,7 @@ fn title(measure: Measure, unit: &str) -> String {
 fn picture(
     places: &[f64],
     record: &[f64],
-    band: &Band,
+    band: &FrictionBand,
     measures: [Measure; 2],
     size: PictureSize,
 ) -> Result<Picture, PictureError> {
@@ -164,16 +161,20 @@ fn picture(
     let scaled = |values: &[f64], axis: usize| -> Vec<f64> {
         values.iter().map(|value| value / prefix(axis).0).collect()
     };
-    let nothing = vec![f64::NAN; places.len()];
-    let curve = |label: &str, mean: &[f64], low: Vec<f64>, high: Vec<f64>| Response {
-        label: label.to_owned(),
-        x: scaled(places, 0),
-        mean: scaled(mean, 1),
-        low,
-        high,
-        line: true,
-        ..Response::default()
-    };
+    let x = scaled(places, 0);
+    let [low, median, high] = [&band.low, &band.median, &band.high].map(|values| scaled(values, 1));
+    let model = (0..x.len()).map(|k| (x[k], Estimate::between(low[k], median[k], high[k])));
+    let curves = vec![
+        Response {
+            label: "model".to_owned(),
+            points: model.collect(),
+            line: true,
+        },
+        Response {
+            line: true,
+            ..Response::of_values("record", &x, &scaled(record, 1))
+        },
+    ];
     let [x_title, y_title] = [0, 1].map(|axis| {
         title(
             measures[axis],
@@ -184,10 +185,7 @@ fn picture(
         x_title,
         y_title,
         note: format!("median and 90 % of {PREDICTED} runs"),
-        curves: vec![
-            curve("model", &band.median, scaled(&band.low, 1), scaled(&band.high, 1)),
-            curve("record", record, nothing.clone(), nothing),
-        ],
+        curves,
         ..Responses::default()
     };
     slipfront_plot::response(&responses, size)

@@ -11,9 +11,9 @@ use slipfront_run::manifest::ManifestFile;
 use slipfront_study::project_folder::{Journal, JournalEntry};
 use slipfront_study::{StudyError, TrainingError};
 
-#[cfg(not(target_family = "wasm"))]
-use crate::device_training::curves_on_device;
 use crate::file::CALIBRATION;
+#[cfg(not(target_family = "wasm"))]
+use crate::on_device::curves_on_device;
 use crate::progress::{CalibrationProgress, CalibrationStage};
 use crate::set_up::{Curves, SetUp};
 
@@ -122,7 +122,7 @@ impl<'a> Runs<'a> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WantedRun {
     /// Identity of the run.
-    id: String,
+    pub(crate) id: String,
     is_finer: bool,
     halvings: u32,
     /// Point of the ranges.
@@ -152,7 +152,8 @@ pub(crate) struct KeptRuns {
     journal: Option<Journal>,
     /// Journal of training runs that several calibrations share.
     shared: Option<Journal>,
-    known: HashMap<String, Curves>,
+    /// Curves of the runs by their identities.
+    pub(crate) known: HashMap<String, Curves>,
     /// Lines of the journal that failed their checksum.
     pub(crate) damaged: usize,
 }
@@ -193,16 +194,6 @@ impl KeptRuns {
         self.journal.iter().map(Journal::listed).collect()
     }
 
-    /// Number of runs.
-    pub(crate) fn count(&self) -> usize {
-        self.known.len()
-    }
-
-    /// Adds a run that was made elsewhere.
-    pub(crate) fn add(&mut self, wanted: WantedRun, made: Curves) {
-        self.known.insert(wanted.id, made);
-    }
-
     fn keep(&mut self, stage: CalibrationStage, made: Vec<CalibrationRun>) -> Result<(), StudyError> {
         let shared = self.shared.as_mut().filter(|_| stage.is_for_any_records());
         if let Some(journal) = shared.or(self.journal.as_mut()) {
@@ -218,20 +209,24 @@ impl KeptRuns {
 pub struct RunMaker<'a> {
     stop: &'a AtomicBool,
     watch: &'a mut dyn FnMut(&CalibrationProgress),
-    kept: Option<&'a mut KeptRuns>,
-    device: Option<&'a dyn Device>,
-    /// Whether runs are made elsewhere if they are known in advance.
-    is_elsewhere: bool,
+    /// Runs that are not repeated, to which new ones are added; none if runs are not kept.
+    pub(crate) kept: Option<&'a mut KeptRuns>,
+    /// Device that makes the runs, with the same curves.
+    pub(crate) device: Option<&'a dyn Device>,
+    /// Whether runs are left to others, except those of a search for the closest curve, where each run
+    /// depends on earlier ones.
+    pub(crate) is_elsewhere: bool,
     /// The runs to be made elsewhere, for which the calibration was interrupted.
-    wanted: Option<Vec<WantedRun>>,
+    pub(crate) wanted: Option<Vec<WantedRun>>,
     ended: usize,
-    of: usize,
+    /// Expected number of runs, without those of a search for the closest curve.
+    pub(crate) total: usize,
 }
 
 impl<'a> RunMaker<'a> {
-    /// Makes runs without keeping them; `of` is their number, without those of a search for the closest
+    /// Makes runs without keeping them; `total` is their number, without those of a search for the closest
     /// curve.
-    pub fn new(stop: &'a AtomicBool, of: usize, watch: &'a mut dyn FnMut(&CalibrationProgress)) -> Self {
+    pub fn new(stop: &'a AtomicBool, total: usize, watch: &'a mut dyn FnMut(&CalibrationProgress)) -> Self {
         Self {
             stop,
             watch,
@@ -240,37 +235,8 @@ impl<'a> RunMaker<'a> {
             is_elsewhere: false,
             wanted: None,
             ended: 0,
-            of,
+            total,
         }
-    }
-
-    /// Sets the expected number of runs, without those of a search for the closest curve.
-    pub(crate) fn expect(&mut self, of: usize) {
-        self.of = of;
-    }
-
-    /// Keeps the runs, and does not repeat those that are kept already.
-    pub(crate) fn with(self, kept: &'a mut KeptRuns) -> Self {
-        Self {
-            kept: Some(kept),
-            ..self
-        }
-    }
-
-    /// Makes runs on a device, which gives the same curves.
-    pub(crate) fn on_device(self, device: Option<&'a dyn Device>) -> Self {
-        Self { device, ..self }
-    }
-
-    /// Leaves runs to others, except those of a search for the closest curve, where each run depends on
-    /// earlier ones.
-    pub(crate) fn elsewhere(self, is_elsewhere: bool) -> Self {
-        Self { is_elsewhere, ..self }
-    }
-
-    /// The runs that must be made elsewhere before the calibration can continue.
-    pub(crate) fn into_wanted(self) -> Option<Vec<WantedRun>> {
-        self.wanted
     }
 
     /// The curves of all runs, in their order.
@@ -286,10 +252,10 @@ impl<'a> RunMaker<'a> {
         let known = |id: &String| self.kept.as_ref()?.known.get(id).cloned();
         let mut found: Vec<Option<Curves>> = ids.iter().map(known).collect();
         let missing: Vec<usize> = (0..found.len()).filter(|run| found[*run].is_none()).collect();
-        self.of = match stage {
+        self.total = match stage {
             // The number of runs of a search is not known in advance.
-            CalibrationStage::Closest => self.of + missing.len(),
-            _ => self.of.saturating_sub(found.len() - missing.len()),
+            CalibrationStage::Closest => self.total + missing.len(),
+            _ => self.total.saturating_sub(found.len() - missing.len()),
         };
         self.show(stage, 0);
         if self.is_elsewhere && stage != CalibrationStage::Closest && !missing.is_empty() {
@@ -329,7 +295,7 @@ impl<'a> RunMaker<'a> {
         (self.watch)(&CalibrationProgress {
             stage,
             runs: self.ended,
-            of: self.of,
+            total: self.total,
         });
     }
 }

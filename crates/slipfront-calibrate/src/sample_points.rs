@@ -8,30 +8,30 @@ use slipfront_run::interpolation::interpolate;
 use slipfront_run::measured::{Measure, MeasuredRecord};
 use slipfront_run::run_curve::RunCurve;
 
-use crate::summaries::MIN_VALUES;
+use crate::features::MIN_VALUES;
 
-/// Largest number of values of a curve for the summaries: more values are averaged over neighbours.
+/// Largest number of values of a curve for the features: more values are averaged over neighbours.
 const MAX_VALUES: usize = 400;
 
 /// Places at which friction of a record is known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SamplePoints {
     /// Quantity of the places: time or displacement.
-    along: Measure,
+    pub(crate) along: Measure,
     /// Quantity at the places: force or coefficient.
-    of: Measure,
+    pub(crate) quantity: Measure,
     /// Places of the values of the record, in ascending order.
     x: Arc<[f64]>,
     /// Number of neighbouring values that are averaged.
     merged: usize,
     /// Least and largest value that the instrument can record.
-    range: Option<[f64; 2]>,
+    pub(crate) range: Option<[f64; 2]>,
 }
 
 impl SamplePoints {
     /// The places of the values of a record; none for a record that is too short or does not advance.
-    pub fn of(record: &MeasuredRecord) -> Option<Self> {
-        Self::at(record.along, record.of, record.x.clone())
+    pub fn from_record(record: &MeasuredRecord) -> Option<Self> {
+        Self::at(record.along, record.quantity, record.x.clone())
     }
 
     /// The places of a planned record of coefficients, `count` equal steps from 0 to `end`; none if they are
@@ -45,10 +45,10 @@ impl SamplePoints {
         )
     }
 
-    fn at(along: Measure, of: Measure, x: Vec<f64>) -> Option<Self> {
+    fn at(along: Measure, quantity: Measure, x: Vec<f64>) -> Option<Self> {
         (x.len() >= MIN_VALUES && x.last() > x.first()).then(|| Self {
             along,
-            of,
+            quantity,
             merged: x.len().div_ceil(MAX_VALUES),
             x: x.into(),
             range: None,
@@ -75,25 +75,15 @@ impl SamplePoints {
     pub(crate) fn add_to(&self, hasher: &mut blake3::Hasher) {
         let Self {
             along,
-            of,
+            quantity,
             x,
             merged,
             range,
         } = self;
-        hasher.update(format!("{along:?}{of:?}{merged}{range:?}").as_bytes());
+        hasher.update(format!("{along:?}{quantity:?}{merged}{range:?}").as_bytes());
         for place in x.iter() {
             hasher.update(&place.to_le_bytes());
         }
-    }
-
-    /// Quantity of the places.
-    pub(crate) fn along(&self) -> Measure {
-        self.along
-    }
-
-    /// Quantity at the places.
-    pub(crate) fn friction(&self) -> Measure {
-        self.of
     }
 
     /// The sample points over the same path of a drive that takes `times` times as long; displacements are
@@ -144,7 +134,7 @@ impl SamplePoints {
         if *x.last()? < self.end() - 0.5 * self.mean_step() {
             return None;
         }
-        let unit = match self.of {
+        let unit = match self.quantity {
             Measure::Force => curve.unit_force?,
             _ => 1.0,
         };
@@ -162,11 +152,6 @@ impl SamplePoints {
             x: self.x[..self.merged * values.max(1)].into(),
             ..self.clone()
         }
-    }
-
-    /// Limits the values at the places to the range of an instrument.
-    pub(crate) fn bound_by(&mut self, range: Option<[f64; 2]>) {
-        self.range = range;
     }
 
     /// Standard deviation of the noise of a curve at the places; `noise` is that of a value of the record, as
@@ -225,7 +210,7 @@ mod tests {
         for (k, x) in record.x.iter_mut().enumerate() {
             *x += 0.1 * (k as f64).sin();
         }
-        let grid = SamplePoints::of(&record).unwrap();
+        let grid = SamplePoints::from_record(&record).unwrap();
         assert_eq!((grid.places(), grid.record(&record)), (record.x, record.y));
     }
 
@@ -245,7 +230,7 @@ mod tests {
     #[test]
     fn neighbours_of_a_long_record_are_averaged() {
         let record = record(1000);
-        let grid = SamplePoints::of(&record).unwrap();
+        let grid = SamplePoints::from_record(&record).unwrap();
         let (places, values) = (grid.places(), grid.record(&record));
         assert_eq!((places.len(), places[0], places[1]), (333, 0.5, 2.0));
         assert!(places.iter().zip(values).all(|(x, y)| (y - 3.0 * x).abs() < 1e-9));
@@ -255,14 +240,14 @@ mod tests {
     #[test]
     fn what_has_no_length_has_no_grid() {
         let still = MeasuredRecord::new(vec![1.0; 100], vec![1.0; 100], Measure::Time, Measure::Force);
-        assert_eq!(SamplePoints::of(&still), None);
-        assert_eq!(SamplePoints::of(&record(MIN_VALUES - 1)), None);
+        assert_eq!(SamplePoints::from_record(&still), None);
+        assert_eq!(SamplePoints::from_record(&record(MIN_VALUES - 1)), None);
     }
 
     #[test]
     fn a_run_that_ends_too_soon_has_no_curve() {
         let record = record(50);
-        let grid = SamplePoints::of(&record).unwrap();
+        let grid = SamplePoints::from_record(&record).unwrap();
         let mut run = RunCurve {
             displacement: record.x.clone(),
             time: record.x,

@@ -6,13 +6,13 @@ use slipfront::RunError;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::{CaseError, CaseFile, Override};
 use slipfront_run::instrument::{Instrument, InstrumentError, InstrumentKeys};
-use slipfront_run::run_curve::{RunCurve, run_curve_unless, steps_to};
+use slipfront_run::run_curve::{CurveCase, RunCurve, steps_to};
 
 use crate::sample_points::SamplePoints;
 use slipfront_study::Base;
 use slipfront_study::Unknown;
 use slipfront_study::identity::physics;
-use slipfront_study::{StudyError, TrainingError};
+use slipfront_study::{NoCurve, StudyError, TrainingError};
 
 /// Largest number of halvings of the time step of a case.
 pub(crate) const MOST_HALVINGS: u32 = 7;
@@ -80,8 +80,8 @@ impl SetUp {
         }
         let mut table = self.instrument.clone().unwrap_or_default();
         table.extend(unknown);
-        InstrumentKeys::of(&table)?
-            .instrument(conditions.grid.friction())
+        InstrumentKeys::from_table(&table)?
+            .instrument(conditions.grid.quantity)
             .map(Some)
     }
 
@@ -138,7 +138,7 @@ impl SetUp {
     }
 
     /// Values of the unknowns at these shares, for a sentence.
-    pub(crate) fn point(&self, shares: &[f64]) -> String {
+    fn point(&self, shares: &[f64]) -> String {
         let values = self.unknowns.iter().zip(shares);
         let set = values.map(|(unknown, &share)| unknown.set_to(share).to_string());
         set.collect::<Vec<_>>().join(", ")
@@ -191,7 +191,7 @@ impl SetUp {
         let mut largest = 0.0_f64;
         for conditions in &self.conditions {
             let case = self.case(&middle, 0, conditions)?;
-            let steps = steps_to(&case, conditions.grid.along(), conditions.grid.end()) << halvings;
+            let steps = steps_to(&case, conditions.grid.along, conditions.grid.end()) << halvings;
             largest = largest.max(case.budget.stepping() + STEP * steps as f64);
         }
         Ok(largest)
@@ -210,10 +210,8 @@ impl SetUp {
     ) -> Result<Option<Curves>, TrainingError> {
         let mut curves = Vec::new();
         for (number, conditions) in self.conditions.iter().enumerate() {
-            let case = self.training_case(shares, seed, conditions)?;
-            let grid = &conditions.grid;
-            let ends = || stop.load(Ordering::Relaxed);
-            let Some(curve) = run_curve_unless(&case, grid.along(), grid.end(), &ends) else {
+            let case = self.curve_case(shares, seed, conditions)?;
+            let Some(curve) = case.curve_unless(&|| stop.load(Ordering::Relaxed)) else {
                 return Ok(None);
             };
             curves.push(self.recorded(shares, number, curve)?);
@@ -221,17 +219,18 @@ impl SetUp {
         Ok(Some(curves))
     }
 
-    /// The case of a record, with an error that names the point of the ranges.
-    pub(crate) fn training_case(
+    /// The case of a record up to the end of the record, with an error that names the point of the ranges.
+    pub(crate) fn curve_case(
         &self,
         shares: &[f64],
         seed: u64,
         conditions: &Conditions,
-    ) -> Result<Case, TrainingError> {
+    ) -> Result<CurveCase, TrainingError> {
         let case = self.case(shares, seed, conditions);
-        case.map_err(|source| TrainingError::Case {
-            point: self.point(shares),
-            source: Box::new(source),
+        Ok(CurveCase {
+            case: case.map_err(|error| self.error_at(shares, error))?,
+            along: conditions.grid.along,
+            end: conditions.grid.end(),
         })
     }
 
@@ -243,21 +242,19 @@ impl SetUp {
         curve: Result<RunCurve, RunError>,
     ) -> Result<Vec<f64>, TrainingError> {
         let conditions = &self.conditions[record];
-        let curve = curve.map_err(|source| TrainingError::Run {
-            point: self.point(shares),
-            source,
-        })?;
-        let instrument = self
-            .instrument(shares, conditions)
-            .map_err(|source| TrainingError::Instrument {
-                point: self.point(shares),
-                source,
-            })?;
+        let curve = curve.map_err(|error| self.error_at(shares, error))?;
+        let instrument = self.instrument(shares, conditions);
+        let instrument = instrument.map_err(|error| self.error_at(shares, error))?;
         let recorded = conditions.grid.curve(&curve, instrument.as_ref());
-        recorded.ok_or_else(|| TrainingError::Short {
+        recorded.ok_or_else(|| self.error_at(shares, NoCurve::Short { record: record + 1 }))
+    }
+
+    /// The error of a run at these shares of the ranges.
+    pub(crate) fn error_at(&self, shares: &[f64], reason: impl Into<NoCurve>) -> TrainingError {
+        TrainingError {
             point: self.point(shares),
-            record: record + 1,
-        })
+            reason: Box::new(reason.into()),
+        }
     }
 
     /// A hash of everything that determines the curves, except the number of runs.
@@ -267,7 +264,7 @@ impl SetUp {
         hasher.update(env!("SLIPFRONT_SOURCE_HASH").as_bytes());
         let middle = self.middle();
         for conditions in &self.conditions {
-            hasher.update(physics(&self.case(&middle, 0, conditions)?, None)?.as_bytes());
+            hasher.update(physics(&self.case(&middle, 0, conditions)?)?.as_bytes());
             conditions.grid.add_to(&mut hasher);
         }
         hasher.update(format!("{:?}{:?}", self.unknowns, self.instrument).as_bytes());

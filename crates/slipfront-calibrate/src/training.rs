@@ -74,7 +74,7 @@ mod tests {
             let record = MeasuredRecord::new(x.clone(), x, Measure::Displacement, Measure::Force);
             Conditions {
                 overrides: vec![Override::new("drive.v_star", &toml::Value::from(speed))],
-                grid: SamplePoints::of(&record).unwrap(),
+                grid: SamplePoints::from_record(&record).unwrap(),
             }
         });
         SetUp {

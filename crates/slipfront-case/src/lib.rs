@@ -13,7 +13,7 @@ pub mod extremes;
 pub mod field_info;
 pub mod nearest;
 pub mod quantity;
-pub mod same;
+pub mod same_on_ranks;
 pub mod table;
 pub mod texture_file;
 pub mod xml;

@@ -162,30 +162,37 @@ pub enum QuantityError {
 
 /// The kind of a [`Quantity`], implemented only by the markers in [`kind`].
 pub trait Kind: Clone + fmt::Debug + PartialEq {
-    /// The dimension of the quantity.
-    const DIMENSION: Dimension;
-    /// Name of the quantity with its article, for messages.
-    const NAME: &'static str;
-    /// Example of the quantity, for messages.
-    const EXAMPLE: &'static str;
-    /// SI unit of the quantity, in a form that can be read back.
-    const SI_UNIT: &'static str;
+    /// The description of the kind.
+    const DESCRIPTION: Description;
 }
 
+/// Description of a [`Kind`], as a value, so that one function reads all kinds.
+#[derive(Clone, Copy, Debug)]
+pub struct Description {
+    dimension: Dimension,
+    /// Name of the quantity with its article, for messages.
+    name: &'static str,
+    /// Example of the quantity, for messages.
+    example: &'static str,
+    /// SI unit of the quantity, in a form that can be read back.
+    si_unit: &'static str,
+}
 macro_rules! quantities {
     ($($(#[$doc:meta])* $name:ident: $dimension:expr, $label:literal, $example:literal, $unit:literal;)*) => {
         /// Markers that distinguish the kinds of quantity.
         pub mod kind {
-            use super::{Dimension, Kind};
+            use super::{Description, Dimension, Kind};
             $(
                 $(#[$doc])*
                 #[derive(Clone, Debug, PartialEq, Eq)]
                 pub enum $name {}
                 impl Kind for $name {
-                    const DIMENSION: Dimension = $dimension;
-                    const NAME: &'static str = $label;
-                    const EXAMPLE: &'static str = $example;
-                    const SI_UNIT: &'static str = $unit;
+                    const DESCRIPTION: Description = Description {
+                        dimension: $dimension,
+                        name: $label,
+                        example: $example,
+                        si_unit: $unit,
+                    };
                 }
             )*
         }
@@ -243,8 +250,7 @@ pub struct Quantity<K: Kind> {
 
 impl<K: Kind> Quantity<K> {
     /// The dimension of every quantity of this type.
-    pub const DIMENSION: Dimension = K::DIMENSION;
-
+    pub const DIMENSION: Dimension = K::DESCRIPTION.dimension;
     /// The value in SI units: the `f64` nearest to the written number.
     pub fn si(&self) -> f64 {
         self.si
@@ -255,27 +261,11 @@ impl<K: Kind> Quantity<K> {
     /// Checking or reading a case file refuses a quantity with a value that is not finite.
     pub fn from_si(si: f64) -> Self {
         Self {
-            text: format!("{si:?} {}", K::SI_UNIT),
+            text: format!("{si:?} {}", K::DESCRIPTION.si_unit),
             si,
             kind: PhantomData,
         }
     }
-
-    const DESCRIPTION: Description = Description {
-        dimension: K::DIMENSION,
-        name: K::NAME,
-        example: K::EXAMPLE,
-        si_unit: K::SI_UNIT,
-    };
-}
-
-/// Constants of a [`Kind`] as values, so that one function reads all kinds.
-#[derive(Clone, Copy)]
-struct Description {
-    dimension: Dimension,
-    name: &'static str,
-    example: &'static str,
-    si_unit: &'static str,
 }
 
 impl<K: Kind> From<f64> for Quantity<K> {
@@ -295,7 +285,7 @@ impl<K: Kind> FromStr for Quantity<K> {
 
     fn from_str(text: &str) -> Result<Self, QuantityError> {
         Ok(Self {
-            si: Self::DESCRIPTION.read(text)?,
+            si: K::DESCRIPTION.read(text)?,
             text: text.to_owned(),
             kind: PhantomData,
         })
@@ -364,7 +354,7 @@ impl<K: Kind> Serialize for Quantity<K> {
 
 impl<'de, K: Kind> Deserialize<'de> for Quantity<K> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, si) = deserializer.deserialize_any(QuantityVisitor(Self::DESCRIPTION))?;
+        let (text, si) = deserializer.deserialize_any(QuantityVisitor(K::DESCRIPTION))?;
         Ok(Self {
             text,
             si,

@@ -27,7 +27,7 @@ pub enum Piece<'x> {
 pub struct Attributes<'x>(Vec<(&'x str, Cow<'x, str>)>);
 
 impl<'x> Attributes<'x> {
-    fn of(element: &'x BytesStart<'_>) -> Result<Self, quick_xml::Error> {
+    fn read(element: &'x BytesStart<'_>) -> Result<Self, quick_xml::Error> {
         let mut found = Vec::new();
         // Names that occur twice are not looked for, since this takes the square of their number.
         for attribute in element.attributes().with_checks(false) {
@@ -97,7 +97,7 @@ pub fn read(
                     ));
                 }
                 has_root = true;
-                let attributes = Attributes::of(&element).map_err(refused)?;
+                let attributes = Attributes::read(&element).map_err(refused)?;
                 count(attributes.0.len())?;
                 each(&path, Piece::Start(attributes))?;
             }

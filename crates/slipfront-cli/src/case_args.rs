@@ -76,9 +76,9 @@ fn name_in_results(case: &Path) -> Option<String> {
 /// Reads the text of a case from standard input, which several ranks cannot share.
 fn read_stdin(ranks: &CommandRanks) -> Result<String, Failure> {
     if ranks.size() > 1 {
-        return Err(Failure::input(anyhow::anyhow!(
-            "ranks have no common standard input: give a case file instead of -"
-        )));
+        return Err(Failure::input(
+            "ranks have no common standard input: give a case file instead of -",
+        ));
     }
     read_text_from(std::io::stdin().lock(), Path::new(STDIN)).map_err(Failure::input)
 }

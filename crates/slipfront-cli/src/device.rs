@@ -8,7 +8,7 @@ use slipfront::device::{Device, DeviceError};
 use slipfront_base::machine::available_memory;
 use slipfront_base::number_format::byte_size;
 use slipfront_case::case::Case;
-use slipfront_run::device_summaries::refusal_of_run;
+use slipfront_run::device::refusal_of_run;
 
 use crate::failure::Failure;
 use crate::print_stderr::print_notes;
@@ -107,7 +107,7 @@ impl DeviceArgs {
                 note(quiet, format!("{on_cpu} computed on the CPU: {reason}"));
                 Ok(None)
             }
-            Err(DeviceError(reason)) => Err(Failure::input(anyhow::anyhow!(
+            Err(DeviceError(reason)) => Err(Failure::input(format!(
                 "{reason}; `--device cpu` gives the same results"
             ))),
         }

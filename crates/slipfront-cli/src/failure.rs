@@ -19,29 +19,30 @@ pub(crate) const STATUSES: &str = "Exit status:
 /// Reason why a command failed.
 pub(crate) enum Failure {
     /// Bad input or usage: status 2.
-    Input(anyhow::Error),
+    Input(String),
     /// An error while running, or a negative result: status 1.
-    Running(anyhow::Error),
+    Running(String),
     /// Stopped by the signal with this number: status 128 + number.
-    Stopped(i32, anyhow::Error),
+    Stopped(i32, String),
 }
 
+#[allow(clippy::needless_pass_by_value)] // `map_err` passes errors by value.
 impl Failure {
-    pub(crate) fn input(error: impl Into<anyhow::Error>) -> Self {
-        Self::Input(error.into())
+    pub(crate) fn input(error: impl ToString) -> Self {
+        Self::Input(error.to_string())
     }
 
-    pub(crate) fn running(error: impl Into<anyhow::Error>) -> Self {
-        Self::Running(error.into())
+    pub(crate) fn running(error: impl ToString) -> Self {
+        Self::Running(error.to_string())
     }
 
     /// The failure of a command that a signal has stopped.
-    pub(crate) fn stopped(signals: &Signals, error: impl Into<anyhow::Error>) -> Self {
-        Self::Stopped(signals.stopped().unwrap_or_default(), error.into())
+    pub(crate) fn stopped(signals: &Signals, error: impl ToString) -> Self {
+        Self::Stopped(signals.stopped().unwrap_or_default(), error.to_string())
     }
 
     /// The failure of a results folder that could not be opened.
-    pub(crate) fn of_folder(error: StudyError) -> Self {
+    pub(crate) fn from_folder(error: StudyError) -> Self {
         match error {
             StudyError::Write { .. } | StudyError::Journal { .. } => Self::running(error),
             error => Self::input(error),
@@ -49,7 +50,7 @@ impl Failure {
     }
 
     /// The failure of a command that could not make or keep results.
-    pub(crate) fn of_results(signals: &Signals, error: StudyError) -> Self {
+    pub(crate) fn from_results(signals: &Signals, error: StudyError) -> Self {
         match error {
             StudyError::Interrupted => Self::stopped(signals, error),
             StudyError::Edited { .. } | StudyError::Checksums { .. } => Self::input(error),
@@ -60,7 +61,7 @@ impl Failure {
     /// Fails if a signal that stops the program has arrived.
     pub(crate) fn if_stopped(signals: &Signals) -> Result<(), Self> {
         match signals.stopped() {
-            Some(_) => Err(Self::stopped(signals, anyhow::anyhow!("stopped by a signal"))),
+            Some(_) => Err(Self::stopped(signals, "stopped by a signal")),
             None => Ok(()),
         }
     }
@@ -73,12 +74,11 @@ impl Failure {
 
 impl From<Failure> for RankFailure {
     fn from(failure: Failure) -> Self {
-        let (error, status) = match failure {
-            Failure::Input(error) => (error, 2),
-            Failure::Running(error) => (error, 1),
-            Failure::Stopped(signal, error) => (error, 128 + signal as u8),
+        let (status, sentence) = match failure {
+            Failure::Input(sentence) => (2, sentence),
+            Failure::Running(sentence) => (1, sentence),
+            Failure::Stopped(signal, sentence) => (128 + signal as u8, sentence),
         };
-        let sentence = error.to_string();
         Self { status, sentence }
     }
 }

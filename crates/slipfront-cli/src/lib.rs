@@ -10,12 +10,10 @@
 mod bounds;
 mod browser;
 mod case_args;
-mod checkpoint_timer;
 mod commands;
 mod device;
 mod divided_override;
 mod failure;
-mod force;
 mod help;
 mod make_case;
 mod print;
@@ -24,6 +22,7 @@ mod progress;
 mod ranks;
 mod report;
 mod run_again;
+mod runs_args;
 mod signals;
 mod table_args;
 mod threads;
@@ -50,7 +49,7 @@ use crate::failure::{Failure, STATUSES, report};
 use crate::print::{expect_printed, print};
 use crate::print_stderr::silence;
 use crate::ranks::CommandRanks;
-pub use crate::report::physics;
+pub use crate::report::physics::physics;
 
 /// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to
 /// kinetic friction.
@@ -138,21 +137,15 @@ Examples:
 /// The command needs its own process: it catches signals and sets the number of threads for the whole
 /// process, once.
 pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Path>) -> u8 {
-    let args: Vec<OsString> = args.into_iter().collect();
-    if let Some(sentence) = divided_override(&args) {
-        return Failure::input(anyhow::anyhow!(sentence)).report();
-    }
-    if let Err(failure) = limit_vectors() {
-        return failure.report();
-    }
     let command = match parse::<Cli>(args) {
-        Ok(cli) => cli.command,
-        Err(error) => {
+        Ok(Ok(cli)) => cli.command,
+        Ok(Err(error)) => {
             return match forgotten_subcommand(&error) {
-                Some(sentence) => Failure::input(anyhow::anyhow!(sentence)).report(),
+                Some(sentence) => Failure::input(sentence).report(),
                 None => print_usage(&error),
             };
         }
+        Err(failure) => return failure.report(),
     };
     execute(|| {
         let done = match command {
@@ -178,11 +171,19 @@ pub fn main(args: impl IntoIterator<Item = OsString>, module_folder: Option<&Pat
     })
 }
 
-/// Parses arguments; the help of the program ends with the table of exit statuses.
-fn parse<T: CommandFactory + FromArgMatches>(args: Vec<OsString>) -> Result<T, clap::Error> {
+/// Parses arguments, and applies the settings of the environment. Help and version are errors of clap; the
+/// help of the program ends with the table of exit statuses.
+fn parse<T: CommandFactory + FromArgMatches>(
+    args: impl IntoIterator<Item = OsString>,
+) -> Result<Result<T, clap::Error>, Failure> {
+    let args: Vec<OsString> = args.into_iter().collect();
+    if let Some(sentence) = divided_override(&args) {
+        return Err(Failure::input(sentence));
+    }
+    limit_vectors()?;
     let mut command = with_statuses(T::command());
-    let matches = command.try_get_matches_from_mut(args)?;
-    T::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+    let matches = command.try_get_matches_from_mut(args);
+    Ok(matches.and_then(|matches| T::from_arg_matches(&matches).map_err(|error| error.format(&mut command))))
 }
 
 /// The subcommands and options of `slipfront`, from which help, manual pages and the page of the book are
@@ -209,57 +210,36 @@ pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc
     execute(|| {
         // This comes first, because ranks of other builds may differ in the messages that they exchange.
         ranks.expect_same(|| vec![("the build".to_owned(), this_build().to_owned())])?;
-        let parsed = ranks.agree(limit_vectors().and_then(|()| parse_on_rank(args)))?;
-        ranks.expect_same(|| vec![("what is asked for".to_owned(), parsed.name().to_owned())])?;
-        match parsed {
-            Parsed::Run(run) => run.execute(&ranks),
-            Parsed::Licences(licences) => ranks.first(|| licences.execute()).map(|_| ()),
-            // Help or version.
-            Parsed::Shown(text) => ranks.first(|| print(&text.to_string())).map(|_| ()),
+        let request = ranks.agree(parse_on_rank(args))?;
+        let name = match &request {
+            Ok(RanksCommand::Run(_)) => "a run",
+            Ok(RanksCommand::Licences(_)) => "licences",
+            Err(text) if text.kind() == ErrorKind::DisplayVersion => "the version",
+            Err(_) => "help",
+        };
+        ranks.expect_same(|| vec![("what is asked for".to_owned(), name.to_owned())])?;
+        match request {
+            Ok(RanksCommand::Run(run)) => run.execute(&ranks),
+            Ok(RanksCommand::Licences(licences)) => ranks.first(|| licences.execute()).map(|_| ()),
+            Err(text) => ranks.first(|| print(&text.to_string())).map(|_| ()),
         }
     })
 }
 
-/// Request in the arguments of a rank.
-enum Parsed {
-    Run(Box<RunCommand>),
-    Licences(commands::licences::LicencesCommand),
-    /// Help or version, which clap returns as an error.
-    Shown(clap::Error),
-}
-
-impl Parsed {
-    fn name(&self) -> &'static str {
-        match self {
-            Self::Run(_) => "a run",
-            Self::Licences(_) => "licences",
-            Self::Shown(text) if text.kind() == ErrorKind::DisplayVersion => "the version",
-            Self::Shown(_) => "help",
-        }
-    }
-}
-
-/// The request in the arguments; wrong arguments of one rank are a failure of all ranks.
-fn parse_on_rank(args: impl IntoIterator<Item = OsString>) -> Result<Parsed, Failure> {
-    let args: Vec<OsString> = args.into_iter().collect();
-    if let Some(sentence) = divided_override(&args) {
-        return Err(Failure::input(anyhow::anyhow!(sentence)));
-    }
-    match parse::<RanksCli>(args) {
-        Ok(cli) => Ok(match cli.command {
-            RanksCommand::Run(run) => Parsed::Run(Box::new(run)),
-            RanksCommand::Licences(licences) => Parsed::Licences(licences),
-        }),
+/// The request in the arguments of a rank, or help and version, which are errors of clap. Wrong arguments of
+/// one rank are a failure of all ranks.
+fn parse_on_rank(
+    args: impl IntoIterator<Item = OsString>,
+) -> Result<Result<RanksCommand, clap::Error>, Failure> {
+    match parse::<RanksCli>(args)? {
         Err(error) if error.use_stderr() => {
             let text = error.to_string();
-            let sentence = match text.trim_end().strip_prefix("error: ") {
-                Some(sentence) => sentence.to_owned(),
-                // Without any arguments, clap returns the help.
-                None => format!("a subcommand is missing\n\n{}", text.trim_end()),
-            };
-            Err(Failure::input(anyhow::anyhow!(sentence)))
+            // Without any arguments, clap returns the help.
+            let missing = || format!("a subcommand is missing\n\n{}", text.trim_end());
+            let sentence = text.trim_end().strip_prefix("error: ");
+            Err(Failure::Input(sentence.map_or_else(missing, str::to_owned)))
         }
-        Err(shown) => Ok(Parsed::Shown(shown)),
+        parsed => Ok(parsed.map(|cli| cli.command)),
     }
 }
 
@@ -270,7 +250,7 @@ fn limit_vectors() -> Result<(), Failure> {
         return Ok(());
     };
     slipfront::limit_simd_width(&widest.to_string_lossy())
-        .map_err(|error| Failure::input(anyhow::anyhow!("{NAME} in the environment: {error}")))
+        .map_err(|error| Failure::input(format!("{NAME} in the environment: {error}")))
 }
 
 fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> u8 {

@@ -5,7 +5,7 @@ use slipfront_case::case::{self, Case, Watch};
 use slipfront_case::case_file::CaseError;
 
 use crate::failure::Failure;
-use crate::progress::mesh::MeshProgress;
+use crate::progress::case::CaseProgress;
 use crate::ranks::CommandRanks;
 use crate::signals::Signals;
 
@@ -17,7 +17,7 @@ pub(crate) fn make_case(
     quiet: bool,
     make: impl FnOnce(&mut Watch, case::Ranks) -> Result<Case, CaseError>,
 ) -> Result<Case, Failure> {
-    let mut progress = MeshProgress::new(quiet);
+    let mut progress = CaseProgress::new(quiet);
     let communicator = ranks.communicator();
     let of_case = case::Ranks {
         communicator: &*communicator,
@@ -35,9 +35,8 @@ pub(crate) fn make_case(
     made.map_err(|error| match error {
         CaseError::Stopped => {
             // The signal may have reached only another rank.
-            let mut signal = [f64::from(signals.stopped().unwrap_or_default())];
-            ranks.largest(&mut signal);
-            Failure::Stopped(signal[0] as i32, error.into())
+            let signal = ranks.largest_of(f64::from(signals.stopped().unwrap_or_default()));
+            Failure::Stopped(signal as i32, error.to_string())
         }
         error => Failure::input(error),
     })

@@ -41,7 +41,7 @@ pub(crate) fn case_to_run(
             "{} is not a regular file: there is nothing to repeat",
             case.display()
         );
-        return Err(Failure::input(anyhow::anyhow!(sentence)));
+        return Err(Failure::input(sentence));
     }
     make_case(&CommandRanks::alone(), signals, quiet, |watch, _| make(watch))
 }

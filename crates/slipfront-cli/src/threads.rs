@@ -31,10 +31,10 @@ pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
 /// thread waits for them. Every thread of the pool starts `others` further threads.
 pub(crate) fn set_worker_threads(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
     match start_pool(threads, others, false)? {
-        0 => Err(Failure::running(anyhow::anyhow!(
+        0 => Err(Failure::running(
             "the system refuses to start threads for the runs: raise the limit on processes (`ulimit -u`) or on addresses \
-             (`ulimit -v`)"
-        ))),
+             (`ulimit -v`)",
+        )),
         started => Ok(started),
     }
 }

@@ -22,6 +22,12 @@ pub(crate) fn note(sentence: &str) -> String {
     text::note(sentence, stdout_columns())
 }
 
+/// Formats notes for stdout, one after the other.
+pub(crate) fn notes(sentences: impl IntoIterator<Item: AsRef<str>>) -> String {
+    let notes = sentences.into_iter().map(|sentence| note(sentence.as_ref()));
+    notes.collect()
+}
+
 /// Formats a text for stderr: lines are wrapped only on a terminal, so that programs can search for whole
 /// sentences. A line that begins with a blank is an excerpt of a file, and stays unchanged.
 pub(crate) fn for_stderr(text: &str) -> String {

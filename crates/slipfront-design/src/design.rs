@@ -1,6 +1,7 @@
 //! A design: a wish with its limits, the search for a texture, and the verdict on the result.
 
 use std::cell::Cell;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,16 +9,16 @@ use slipfront::device::Device;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
 
-use crate::evaluate::{Evaluator, Keep, MadeRun, RunCache};
+use crate::evaluate::{Evaluator, Keep, MadeRun, RunCache, Runs};
 use crate::judge::{Contender, Judge};
 use crate::limits::{Illegal, Limits};
-use crate::named::{GROOVE, Named, named};
+use crate::named_patterns::{GROOVE, Named, named};
 use crate::open_search::OpenSearch;
 use crate::search::{Proposal, Rejected, Search};
 use crate::shapes::Shapes;
 use crate::slider_blocks::SliderBlocks;
 use crate::space::Space;
-use crate::stages::{Bounds, DesignStage, RunCost, SearchLength, SearchProgress, Stages, Tried};
+use crate::stages::{Bounds, DesignStage, RatedDraft, RunCost, SearchLength, SearchProgress, Stages};
 use crate::subject::{Fidelity, Subject};
 use crate::verdict::Verdict;
 use crate::wish::Wish;
@@ -63,7 +64,7 @@ pub struct Outcome {
     /// Drafts without a legal texture.
     pub(crate) rejected: Rejected,
     /// Drafts that were tried, in their order.
-    pub(crate) tried: Vec<Tried>,
+    pub(crate) tried: Vec<RatedDraft>,
 }
 
 impl Design {
@@ -84,7 +85,7 @@ impl Design {
     ) -> Result<Self, StudyError> {
         let subject = |(case, wish): &(&Case, Wish)| Subject::new(case, wish.clone(), limits.coverage[1]);
         let subjects = cases.iter().map(subject).collect::<Result<Vec<_>, _>>()?;
-        let grid = SliderBlocks::of(cases[0].0);
+        let grid = SliderBlocks::from_case(cases[0].0);
         Ok(Self {
             evaluator: Evaluator {
                 subjects,
@@ -187,7 +188,7 @@ impl Design {
             })
             .collect();
         let names: Vec<String> = legal.iter().map(|named| named.name.clone()).collect();
-        let (of, of_work) = self.most_of_verdict(&names);
+        let (total, total_work) = self.most_of_verdict(&names);
         let groove = legal.iter().filter(|named| named.name == GROOVE);
         let drawn = legal.iter().filter(|named| self.is_drawn(&named.name));
         let beside: Vec<Contender> = groove.chain(drawn).cloned().collect();
@@ -198,11 +199,16 @@ impl Design {
             here.set(here.get() + runs.iter().map(|run| run.work).sum::<f64>());
             keep(runs)
         };
-        let best = stages.run(bounds, known, &mut kept, &mut |now| {
+        let mut runs = Runs {
+            known,
+            keep: &mut kept,
+            stop: bounds.stop,
+        };
+        let best = stages.run(bounds, &mut runs, &mut |now| {
             watch(&SearchProgress {
                 work: RunCost {
                     here: here.get(),
-                    left: now.work.left_within((bounds.share_of_time)(), here.get()) + of_work,
+                    left: now.work.left_within((bounds.share_of_time)(), here.get()) + total_work,
                 },
                 ..now.clone()
             });
@@ -224,7 +230,7 @@ impl Design {
             let runs = made.get() - searched_runs;
             watch(&SearchProgress {
                 runs,
-                of,
+                total,
                 textures,
                 stage: DesignStage::Judging,
                 best: f64::NAN,
@@ -233,18 +239,22 @@ impl Design {
                 best_shares: None,
                 work: RunCost {
                     here: here.get(),
-                    left: (of_work - (here.get() - searched_work)).max(0.0),
+                    left: (total_work - (here.get() - searched_work)).max(0.0),
                 },
             });
             Ok(())
         };
-        let judge = Judge {
+        let mut judge = Judge {
             evaluator: &self.evaluator,
-            stop: bounds.stop,
+            runs: &mut Runs {
+                known,
+                keep: &mut kept,
+                stop: bounds.stop,
+            },
             asks_for_numbers: self.shapes.is_some(),
         };
         let judged = judge
-            .verdict(&searched, &legal, &beside, known, &mut kept)?
+            .verdict(&searched, &legal, &beside)?
             .ok_or_else(|| stages.no_design())?;
         let winner = best.iter().find(|found| found.texture == judged.texture);
         Ok(Outcome {
@@ -269,7 +279,12 @@ impl Design {
     ) -> Result<Vec<Arc<Vec<bool>>>, StudyError> {
         let starts = self.starts(&|| bounds.stop.load(Ordering::Relaxed)).0;
         let mut stages = Stages::new(&self.evaluator, self.search_from(starts), self.drafts_at_once);
-        let best = stages.run(bounds, &mut RunCache::new(), &mut |_| Ok(()), watch)?;
+        let mut runs = Runs {
+            known: &mut RunCache::new(),
+            keep: &mut |_| Ok(()),
+            stop: bounds.stop,
+        };
+        let best = stages.run(bounds, &mut runs, watch)?;
         if best.is_empty() {
             return Err(stages.no_design());
         }
@@ -352,14 +367,30 @@ impl Design {
             Fidelity::Fine
         };
         let textures: Vec<Arc<Vec<bool>>> = textures.into_iter().map(Arc::new).collect();
-        let wanted = self.evaluator.wanted(&textures, 0..surfaces, fidelity);
-        self.evaluator.run(&wanted, known, stop, &mut |_| Ok(()))?;
+        self.make_runs(&textures, 0..surfaces, fidelity, known, stop)?;
         let loss = |texture| {
-            let lost = self.evaluator.lost(texture, 0..surfaces, fidelity, known);
-            let loss = self.evaluator.loss(texture, 0..surfaces, fidelity, known);
-            lost.map_or(Ok(loss), Err)
+            let trial = self.evaluator.trial(texture, 0..surfaces, fidelity, known);
+            trial.lost().map_or(Ok(trial.loss()), Err)
         };
         Ok(textures.iter().map(loss).collect())
+    }
+
+    /// Makes the runs of some textures on some surfaces.
+    fn make_runs(
+        &self,
+        textures: &[Arc<Vec<bool>>],
+        surfaces: Range<u64>,
+        fidelity: Fidelity,
+        known: &mut RunCache,
+        stop: &AtomicBool,
+    ) -> Result<(), StudyError> {
+        let mut runs = Runs {
+            known,
+            keep: &mut |_| Ok(()),
+            stop,
+        };
+        let wanted = self.evaluator.wanted(textures, surfaces, fidelity);
+        self.evaluator.run(&wanted, &mut runs)
     }
 
     /// Loss of each texture, a distance from the wish, on each of `surfaces` surfaces that the search has not
@@ -378,15 +409,14 @@ impl Design {
         } else {
             0..1
         };
-        let mut known = RunCache::new();
-        let wanted = self
-            .evaluator
-            .wanted(textures, surfaces.clone(), Fidelity::Verdict);
-        self.evaluator.run(&wanted, &mut known, stop, &mut |_| Ok(()))?;
+        let (mut known, verdict) = (RunCache::new(), Fidelity::Verdict);
+        self.make_runs(textures, surfaces.clone(), verdict, &mut known, stop)?;
         let losses = |texture: &Arc<Vec<bool>>| {
             let loss = |surface| {
-                self.evaluator
-                    .loss(texture, surface..surface + 1, Fidelity::Verdict, &known)
+                let trial = self
+                    .evaluator
+                    .trial(texture, surface..surface + 1, verdict, &known);
+                trial.loss()
             };
             surfaces.clone().map(loss).collect()
         };

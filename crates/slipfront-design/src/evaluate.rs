@@ -12,7 +12,7 @@ use slipfront::parallel::*;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
 #[cfg(not(target_family = "wasm"))]
-use slipfront_run::device_summaries::device_summaries;
+use slipfront_run::device::device_summaries;
 use slipfront_run::run_summary::run_summary_unless;
 use slipfront_run::running::{RunData, run_unless};
 use slipfront_run::summary::Summary;
@@ -20,10 +20,9 @@ use slipfront_run::summary::Summary;
 use crate::search::hash;
 use crate::slider_blocks::SliderBlocks;
 use crate::subject::{Fidelity, Subject};
-use crate::tolerance::WithinTolerance;
+use crate::trial::Trial;
 use crate::wish::{Measured, Wish};
 use slipfront_study::StudyError;
-use slipfront_study::statistics::mean;
 
 /// A run that is needed.
 #[derive(Clone)]
@@ -62,12 +61,22 @@ pub struct MadeRun {
 
 /// Numbers that a design needs of a run.
 fn measured(summary: Result<Summary, RunError>) -> RunOutcome {
-    let measured = summary.map(|summary| Measured::of(&summary));
+    let measured = summary.map(|summary| Measured::from_summary(&summary));
     measured.map_err(|error| error.to_string())
 }
 
 /// Callback that receives finished runs, in their order.
 pub type Keep<'a> = dyn FnMut(&[MadeRun]) -> Result<(), StudyError> + 'a;
+
+/// The known runs, and what becomes of new ones.
+pub(crate) struct Runs<'a> {
+    /// Outcomes of the runs so far.
+    pub(crate) known: &'a mut RunCache,
+    /// Callback that keeps new runs.
+    pub(crate) keep: &'a mut Keep<'a>,
+    /// Flag that ends all runs.
+    pub(crate) stop: &'a AtomicBool,
+}
 
 /// The cases in which designs are tried, and the rule that combines their losses.
 #[derive(Debug)]
@@ -164,21 +173,15 @@ impl Evaluator {
 
     /// Makes the runs that are not known yet, on the device or on the threads of rayon's pool, and passes
     /// them on in the order of `wanted`. After a stop, it passes none on.
-    pub(crate) fn run(
-        &self,
-        wanted: &[Wanted],
-        known: &mut RunCache,
-        stop: &AtomicBool,
-        keep: &mut Keep,
-    ) -> Result<(), StudyError> {
+    pub(crate) fn run(&self, wanted: &[Wanted], runs: &mut Runs) -> Result<(), StudyError> {
         // Textures and cases may share runs, above all the run of the slider without texture.
         let mut asked = HashSet::new();
         let missing: Vec<(RunId, &Wanted)> = wanted
             .iter()
             .map(|wanted| (self.id(wanted), wanted))
-            .filter(|(id, _)| !known.contains_key(id) && asked.insert(id.clone()))
+            .filter(|(id, _)| !runs.known.contains_key(id) && asked.insert(id.clone()))
             .collect();
-        let outcomes = self.outcomes(&missing, stop)?;
+        let outcomes = self.outcomes(&missing, runs.stop)?;
         // In the order of the request, whichever thread was first, so the journal is the same for any number
         // of threads.
         let made = missing.into_iter().zip(outcomes).map(|((id, wanted), ended)| {
@@ -189,8 +192,9 @@ impl Evaluator {
             })
         });
         let made: Vec<MadeRun> = made.collect::<Result<_, StudyError>>()?;
-        keep(&made)?;
-        known.extend(made.into_iter().map(|made| (made.id, made.ended)));
+        (runs.keep)(&made)?;
+        runs.known
+            .extend(made.into_iter().map(|made| (made.id, made.ended)));
         Ok(())
     }
 
@@ -251,7 +255,7 @@ impl Evaluator {
         let record = run_unless(&Arc::new(case), &ends)?;
         let measured = record.map(|record| Measured {
             misfit: Some(misfit(points, &record)),
-            ..Measured::of(&record.summary)
+            ..Measured::from_summary(&record.summary)
         });
         Some(measured.map_err(|error| error.to_string()))
     }
@@ -271,142 +275,21 @@ impl Evaluator {
         ended.unwrap_or_else(|| Err("the run was not made".to_owned()))
     }
 
-    /// Deviation from the wish in a run with a texture, or the reason why there is none.
-    fn deviation(&self, run: &Wanted, known: &RunCache) -> Result<f64, String> {
-        let wish = &self.subjects[run.subject].wish;
-        let with = self.ended(run, known)?;
-        if !wish.is_relative() {
-            return wish.deviation(&with, None);
-        }
-        let bare = Wanted {
-            texture: None,
-            ..run.clone()
-        };
-        let without = self
-            .ended(&bare, known)
-            .map_err(|why| format!("without texture: {why}"))?;
-        wish.deviation(&with, Some(&without))
-    }
-
-    /// Deviations of a texture in one case, one per surface; NaN where there is none.
-    fn deviations(
-        &self,
-        subject: usize,
-        texture: &Arc<Vec<bool>>,
+    /// The runs of a texture on some surfaces, as far as they are known.
+    pub(crate) fn trial<'a>(
+        &'a self,
+        texture: &'a Arc<Vec<bool>>,
         surfaces: Range<u64>,
         fidelity: Fidelity,
-        known: &RunCache,
-    ) -> Vec<f64> {
-        let run = |surface| Wanted {
-            subject,
-            texture: Some(Arc::clone(texture)),
-            surface,
+        known: &'a RunCache,
+    ) -> Trial<'a> {
+        Trial {
+            evaluator: self,
+            texture,
+            surfaces,
             fidelity,
-        };
-        surfaces
-            .map(|surface| self.deviation(&run(surface), known).unwrap_or(f64::NAN))
-            .collect()
-    }
-
-    /// The loss of a texture on some surfaces: the mean, or the largest, of the losses of the cases; infinite
-    /// if the texture is [lost](Self::lost) on any surface.
-    pub(crate) fn loss(
-        &self,
-        texture: &Arc<Vec<bool>>,
-        surfaces: Range<u64>,
-        fidelity: Fidelity,
-        known: &RunCache,
-    ) -> f64 {
-        let losses = (0..self.subjects.len()).map(|subject| {
-            let deviations = self.deviations(subject, texture, surfaces.clone(), fidelity, known);
-            let loss = self.wish().loss(&deviations);
-            if loss.is_nan() { f64::INFINITY } else { loss }
-        });
-        if self.is_worst {
-            losses.fold(f64::NEG_INFINITY, f64::max)
-        } else {
-            losses.sum::<f64>() / self.subjects.len() as f64
+            known,
         }
-    }
-
-    /// Contributions of the surfaces to the [loss](Self::loss) of a texture: their mean is the loss, and
-    /// their scatter gives its uncertainty. If the worst case counts, they are the contributions in that
-    /// case.
-    pub(crate) fn loss_by_surface(
-        &self,
-        texture: &Arc<Vec<bool>>,
-        surfaces: Range<u64>,
-        fidelity: Fidelity,
-        known: &RunCache,
-    ) -> Vec<f64> {
-        let n_surfaces = (surfaces.end - surfaces.start) as usize;
-        let of_case = |subject: usize| -> Vec<f64> {
-            let deviations = self.deviations(subject, texture, surfaces.clone(), fidelity, known);
-            let parts = self.wish().parts_of_loss(&deviations).into_iter();
-            parts
-                .map(|part| if part.is_nan() { f64::INFINITY } else { part })
-                .collect()
-        };
-        let cases: Vec<Vec<f64>> = (0..self.subjects.len()).map(of_case).collect();
-        if self.is_worst {
-            let worst = cases.into_iter().max_by(|a, b| mean(a).total_cmp(&mean(b)));
-            return worst.unwrap_or_default();
-        }
-        let of_surface = |k: usize| mean(&cases.iter().map(|parts| parts[k]).collect::<Vec<_>>());
-        (0..n_surfaces).map(of_surface).collect()
-    }
-
-    /// Number of parts within the tolerance of the wish in every case, where each surface is a part; none
-    /// without a tolerance.
-    pub(crate) fn within(
-        &self,
-        texture: &Arc<Vec<bool>>,
-        surfaces: Range<u64>,
-        fidelity: Fidelity,
-        known: &RunCache,
-    ) -> Option<WithinTolerance> {
-        self.wish().is_within(0.0)?;
-        let parts = (surfaces.end - surfaces.start) as usize;
-        let mut is_good = vec![true; parts];
-        for (number, subject) in self.subjects.iter().enumerate() {
-            let deviations = self.deviations(number, texture, surfaces.clone(), fidelity, known);
-            for (is_good, deviation) in is_good.iter_mut().zip(deviations) {
-                // A lost part has no deviation, and does not count as within.
-                *is_good &= subject.wish.is_within(deviation) == Some(true);
-            }
-        }
-        let within = is_good.into_iter().filter(|&is_good| is_good).count();
-        Some(WithinTolerance { within, parts })
-    }
-
-    /// Reason why a texture is lost on some surfaces: that of the first run without a deviation from the
-    /// wish, with its case and seed if there are several.
-    pub(crate) fn lost(
-        &self,
-        texture: &Arc<Vec<bool>>,
-        surfaces: Range<u64>,
-        fidelity: Fidelity,
-        known: &RunCache,
-    ) -> Option<String> {
-        let cases = 0..self.subjects.len();
-        let mut runs = surfaces.flat_map(|surface| cases.clone().map(move |subject| (subject, surface)));
-        runs.find_map(|(subject, surface)| {
-            let run = Wanted {
-                subject,
-                texture: Some(Arc::clone(texture)),
-                surface,
-                fidelity,
-            };
-            let why = self.deviation(&run, known).err()?;
-            let case = (self.subjects.len() > 1).then(|| format!("case {}", subject + 1));
-            let seed =
-                (surface > 0).then(|| format!("`friction.seed` = {}", self.subjects[subject].seed + surface));
-            let mut place = case.into_iter().chain(seed).collect::<Vec<_>>().join(", ");
-            if !place.is_empty() {
-                place += ": ";
-            }
-            Some(place + &why)
-        })
     }
 
     /// Makes the runs of the slider without texture, and refuses it if it has no value to compare textures
@@ -414,19 +297,14 @@ impl Evaluator {
     ///
     /// # Errors
     /// The reason; when runs cannot be made or kept, and after a stop.
-    pub(crate) fn check_reference(
-        &self,
-        known: &mut RunCache,
-        stop: &AtomicBool,
-        keep: &mut Keep,
-    ) -> Result<(), StudyError> {
+    pub(crate) fn check_reference(&self, runs: &mut Runs) -> Result<(), StudyError> {
         if !self.wish().is_relative() {
             return Ok(());
         }
         let wanted = self.wanted(&[], 0..1, Fidelity::Coarse);
-        self.run(&wanted, known, stop, keep)?;
+        self.run(&wanted, runs)?;
         for run in &wanted {
-            let why = match self.ended(run, known) {
+            let why = match self.ended(run, runs.known) {
                 Ok(bare) => self.subjects[run.subject]
                     .wish
                     .deviation(&bare, Some(&bare))

@@ -65,7 +65,8 @@ const MAX_DRAFTS: u32 = 100_000;
 pub struct DesignFile {
     /// Keys of the file.
     pub keys: DesignKeys,
-    pub(crate) project: ProjectFile,
+    /// The base case, and the text of the file.
+    pub project: ProjectFile,
 }
 
 key_rows! {
@@ -219,19 +220,6 @@ impl DesignFile {
         Ok(Self { keys, project })
     }
 
-    /// Sets keys of the base case, each by a string such as `drive.v_star=0.05`.
-    ///
-    /// # Errors
-    /// When a string is not an override.
-    pub fn set(&mut self, overrides: &[String]) -> Result<(), CaseError> {
-        self.project.set(overrides)
-    }
-
-    /// Name of the design and of its results.
-    pub fn name(&self) -> &str {
-        &self.project.name
-    }
-
     /// The case in which designs are tried first, with its own texture.
     ///
     /// # Errors
@@ -275,7 +263,7 @@ impl DesignFile {
         let case = Case::to_run(
             file,
             &self.project.name,
-            &self.project.base.folder,
+            self.project.base.folder.as_path(),
             &mut |_| true,
             Ranks::ALONE,
         )?;
@@ -372,11 +360,10 @@ impl DesignFile {
             return Err(self.project.error("cases", sentence).into());
         }
         let cases = self.cases()?;
-        let grid = SliderBlocks::of(&base);
-        if cases
-            .iter()
-            .any(|case| SliderBlocks::of(case) != grid || case.scales.block_size != base.scales.block_size)
-        {
+        let grid = SliderBlocks::from_case(&base);
+        if cases.iter().any(|case| {
+            SliderBlocks::from_case(case) != grid || case.scales.block_size != base.scales.block_size
+        }) {
             let sentence = "all cases of a design have the blocks of the base".to_owned();
             return Err(self.project.error("cases", sentence).into());
         }
@@ -597,7 +584,7 @@ impl DesignFile {
             return Err(self.project.error("wish.curve", sentence).into());
         }
         let mu_s = case.scales.mu_static_mean;
-        let unit = if record.of == Measure::Force {
+        let unit = if record.quantity == Measure::Force {
             load * mu_s
         } else {
             mu_s
@@ -706,7 +693,7 @@ mod tests {
         assert!((run / fine - 1.0).abs() < 0.01);
         let drafts = file(200).memory(300).unwrap().beside - found.beside;
         assert!((drafts - 200.0 * (2048.0 + 200.0 * 200.0)).abs() < 1.0);
-        let available = found.of(2) + 0.5 * run;
+        let available = found.on_threads(2) + 0.5 * run;
         let no_memory = |needed, available| StudyError::DesignMemory { needed, available };
         assert!(found.compare(2, available, no_memory).is_ok());
         assert!(matches!(
@@ -718,7 +705,7 @@ mod tests {
             })
         ));
         let said = found
-            .compare(2, found.of(1) - 1.0, no_memory)
+            .compare(2, found.on_threads(1) - 1.0, no_memory)
             .unwrap_err()
             .to_string();
         assert!(

@@ -17,7 +17,7 @@ use crate::report::{MASK_NAME, Report, VERDICT};
 use crate::stages::{Bounds, RunCost, SearchLength, SearchProgress};
 use slipfront_study::StudyError;
 use slipfront_study::project_folder::{
-    Batch, Derivation, Journal, JournalEntry, Others, ResultFiles, notes_of_use, read_numbers,
+    Batch, Journal, JournalEntry, Others, Project, ResultFiles, notes_of_use, read_numbers,
 };
 
 impl JournalEntry for MadeRun {
@@ -57,7 +57,7 @@ impl DesignFolder {
             journal,
             known: kept.into_iter().map(|run: MadeRun| (run.id, run.ended)).collect(),
             damaged,
-            file: DesignFile::parse(&given.text, &name, file.name(), path)?,
+            file: DesignFile::parse(&given.text, &name, &file.project.name, path)?,
             device: None,
         })
     }
@@ -108,7 +108,7 @@ impl DesignFolder {
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<String, StudyError> {
         let design = self.file.design()?.on_device(self.device.clone());
-        let mut of_front = FrontCost::of(self.file.keys.front.len());
+        let mut of_front = FrontCost::new(self.file.keys.front.len());
         let outcome = self.run(&design, bounds, &mut |now| watch(&of_front.with(now)))?;
         let mut batch = self.files.begin();
         let mut text = self.report(&mut batch).write(&design, &outcome)?;
@@ -195,7 +195,7 @@ struct FrontCost {
 }
 
 impl FrontCost {
-    fn of(to_come: usize) -> Self {
+    fn new(to_come: usize) -> Self {
         Self {
             to_come,
             ..Self::default()
@@ -261,10 +261,12 @@ fn search_of(folder: &Path) -> Result<SearchLength, StudyError> {
 }
 
 /// Folders of designs.
-pub const DESIGNS: Derivation = Derivation {
+pub const DESIGNS: Project = Project {
     kind: &DESIGN,
     no_pictures: &[MASK_NAME],
-    find_again,
+    beside: &[],
+    verify_beside: None,
+    find_again: Some(find_again),
 };
 
 /// Repeats a design in another folder from the runs in its journal.

@@ -2,15 +2,14 @@
 
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use slipfront_case::case_file::Texture;
 
-use crate::evaluate::{Evaluator, Keep, RunCache};
+use crate::evaluate::{Evaluator, Runs};
 use crate::mean::Mean;
 use crate::stages::Stages;
 use crate::subject::Fidelity;
-use crate::tolerance::WithinTolerance;
+use crate::trial::Trial;
 use slipfront_study::StudyError;
 
 /// Number of surfaces on which finalists are compared.
@@ -37,7 +36,7 @@ pub(crate) struct Surfaces {
 }
 
 impl Surfaces {
-    pub(crate) fn of(evaluator: &Evaluator) -> Self {
+    pub(crate) fn new(evaluator: &Evaluator) -> Self {
         let first = Stages::UNSEEN;
         if evaluator.scatters() {
             let judged = first + COMPARED;
@@ -54,87 +53,45 @@ impl Surfaces {
     }
 }
 
-/// Inputs of a verdict.
-pub(crate) struct Judge<'a> {
+/// Judge of textures in some cases.
+pub(crate) struct Judge<'a, 'r> {
     /// Evaluator that makes the runs.
     pub(crate) evaluator: &'a Evaluator,
-    /// Flag that ends all runs.
-    pub(crate) stop: &'a AtomicBool,
+    /// The runs.
+    pub(crate) runs: &'a mut Runs<'r>,
     /// Whether the answer must be a result of the search, even if a named pattern is as good: a pattern has
     /// no numbers.
     pub(crate) asks_for_numbers: bool,
 }
 
-impl Judge<'_> {
+impl Judge<'_, '_> {
     /// Makes the runs of some textures on some surfaces.
-    pub(crate) fn run(
-        &self,
-        contenders: &[&Contender],
-        surfaces: Range<u64>,
-        known: &mut RunCache,
-        keep: &mut Keep,
-    ) -> Result<(), StudyError> {
+    pub(crate) fn run(&mut self, contenders: &[&Contender], surfaces: &Range<u64>) -> Result<(), StudyError> {
         let textures: Vec<_> = contenders
             .iter()
             .map(|found| Arc::clone(&found.texture))
             .collect();
         // One surface after the other, so that a stop loses the runs of at most one surface.
-        for surface in surfaces {
+        for surface in surfaces.clone() {
             let wanted = self
                 .evaluator
                 .wanted(&textures, surface..surface + 1, Fidelity::Verdict);
-            self.evaluator.run(&wanted, known, self.stop, keep)?;
+            self.evaluator.run(&wanted, self.runs)?;
         }
         Ok(())
     }
 
-    pub(crate) fn loss(&self, contender: &Contender, surfaces: Range<u64>, known: &RunCache) -> f64 {
+    /// The runs of a texture on some surfaces.
+    pub(crate) fn trial<'t>(&'t self, contender: &'t Contender, surfaces: &Range<u64>) -> Trial<'t> {
+        let (texture, surfaces) = (&contender.texture, surfaces.clone());
         self.evaluator
-            .loss(&contender.texture, surfaces, Fidelity::Verdict, known)
-    }
-
-    /// The loss of a texture with the confidence interval from its scatter over surfaces.
-    pub(crate) fn mean_loss(&self, contender: &Contender, surfaces: Range<u64>, known: &RunCache) -> Mean {
-        Mean::of(&self.loss_by_surface(contender, surfaces, known))
+            .trial(texture, surfaces, Fidelity::Verdict, self.runs.known)
     }
 
     /// The loss of one texture minus that of another, paired by surface.
-    pub(crate) fn difference(
-        &self,
-        one: &Contender,
-        other: &Contender,
-        surfaces: Range<u64>,
-        known: &RunCache,
-    ) -> Mean {
-        let [one, other] = [one, other].map(|found| self.loss_by_surface(found, surfaces.clone(), known));
+    pub(crate) fn difference(&self, one: &Contender, other: &Contender, surfaces: &Range<u64>) -> Mean {
+        let [one, other] = [one, other].map(|found| self.trial(found, surfaces).loss_by_surface());
         let pairs = one.iter().zip(&other);
-        Mean::of(&pairs.map(|(one, other)| one - other).collect::<Vec<_>>())
-    }
-
-    /// Reason why a texture has no loss on some surfaces, if it has none.
-    pub(crate) fn lost(
-        &self,
-        contender: &Contender,
-        surfaces: Range<u64>,
-        known: &RunCache,
-    ) -> Option<String> {
-        self.evaluator
-            .lost(&contender.texture, surfaces, Fidelity::Verdict, known)
-    }
-
-    /// Parts of a texture within the tolerance of the wish, if it has one.
-    pub(crate) fn within(
-        &self,
-        contender: &Contender,
-        surfaces: Range<u64>,
-        known: &RunCache,
-    ) -> Option<WithinTolerance> {
-        self.evaluator
-            .within(&contender.texture, surfaces, Fidelity::Verdict, known)
-    }
-
-    fn loss_by_surface(&self, contender: &Contender, surfaces: Range<u64>, known: &RunCache) -> Vec<f64> {
-        self.evaluator
-            .loss_by_surface(&contender.texture, surfaces, Fidelity::Verdict, known)
+        Mean::from_values(&pairs.map(|(one, other)| one - other).collect::<Vec<_>>())
     }
 }

@@ -1,6 +1,6 @@
 //! Limits on the textures of a design, and the conversion of a draft to a legal texture.
 
-use slipfront::opening;
+use slipfront::block_sets;
 use slipfront_base::number_format::{are, count as count_of, four_digits};
 
 use crate::patch::PatchDraft;
@@ -101,10 +101,10 @@ impl Limits {
         }
         // Few drafts have parts that are too narrow, so the width is determined only for those.
         let narrow = |set: &[bool], least| {
-            if opening::opened(&grid.lattice, set, least) == set {
+            if block_sets::opened(&grid.lattice, set, least) == set {
                 None
             } else {
-                opening::width(&grid.lattice, set)
+                block_sets::width(&grid.lattice, set)
             }
         };
         let narrow_feature = match drawn {
@@ -137,7 +137,7 @@ impl Limits {
             return Err(Illegal::Forbidden { blocks });
         }
         if let Some(most) = self.max_features {
-            let found = opening::n_pieces(&grid.lattice, textured);
+            let found = block_sets::n_pieces(&grid.lattice, textured);
             if found > most {
                 return Err(Illegal::Features { found, most });
             }
@@ -197,8 +197,8 @@ impl Limits {
                 .map(|block| growth[block].min(growth[mirrored(grid, block, axis)]))
                 .collect();
         }
-        let barred = self.barred(grid);
-        for block in (0..growth.len()).filter(|&block| barred[block]) {
+        let never_textured = self.never_textured(grid);
+        for block in (0..growth.len()).filter(|&block| never_textured[block]) {
             growth[block] = f64::INFINITY;
         }
         growth
@@ -206,7 +206,7 @@ impl Limits {
 
     /// Blocks that no legal texture contains: those that do not exist, those that must be in contact, and all
     /// copies and mirror images of these.
-    fn barred(&self, grid: &SliderBlocks) -> Vec<bool> {
+    fn never_textured(&self, grid: &SliderBlocks) -> Vec<bool> {
         let n = grid.exists.len();
         let is_own = |block: usize| {
             !grid.exists[block] || self.forbidden.as_ref().is_some_and(|forbidden| forbidden[block])
@@ -215,29 +215,29 @@ impl Limits {
         for block in (0..n).filter(|&block| is_own(block)) {
             in_cell[self.in_first_cell(grid, block)] = true;
         }
-        let mut barred: Vec<bool> = (0..n)
+        let mut never_textured: Vec<bool> = (0..n)
             .map(|block| in_cell[self.in_first_cell(grid, block)])
             .collect();
         for axis in (0..2).filter(|&axis| self.mirror[axis]) {
-            barred = (0..n)
-                .map(|block| barred[block] || barred[mirrored(grid, block, axis)])
+            never_textured = (0..n)
+                .map(|block| never_textured[block] || never_textured[mirrored(grid, block, axis)])
                 .collect();
         }
-        barred
+        never_textured
     }
 
     /// A set after too narrow parts are removed and too narrow gaps are filled.
     fn smoothed(&self, grid: &SliderBlocks, set: &[bool]) -> Vec<bool> {
-        let opened = opening::opened(&grid.lattice, set, self.feature_blocks());
+        let opened = block_sets::opened(&grid.lattice, set, self.feature_blocks());
         if self.gap <= 1 {
             return opened;
         }
-        let contact = opening::opened(&grid.lattice, &grid.others(&opened), self.gap);
+        let contact = block_sets::opened(&grid.lattice, &grid.others(&opened), self.gap);
         let closed = grid.others(&contact);
         if closed == opened {
             return opened;
         }
-        opening::opened(&grid.lattice, &closed, self.feature_blocks())
+        block_sets::opened(&grid.lattice, &closed, self.feature_blocks())
     }
 
     /// The block at the same place in the first cell.
@@ -262,7 +262,7 @@ fn mirrored(grid: &SliderBlocks, block: usize, axis: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::named::named;
+    use crate::named_patterns::named;
     use crate::search::Search;
     use crate::slider_blocks::tests::{drawn, whole};
     use crate::space::Space;
@@ -388,7 +388,7 @@ mod tests {
                     })
                     .collect();
                 for search in &mut twins {
-                    search.tell(&rated);
+                    search.add_losses(&rated);
                 }
             }
         }

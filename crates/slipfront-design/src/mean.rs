@@ -16,8 +16,8 @@ pub struct Mean {
 
 impl Mean {
     /// The mean of values, with its interval if there are several.
-    pub(crate) fn of(values: &[f64]) -> Self {
-        let sample = Sample::of(values, CONFIDENCE);
+    pub(crate) fn from_values(values: &[f64]) -> Self {
+        let sample = Sample::from_values(values, CONFIDENCE);
         let mean = sample.map_or(f64::NAN, |sample| sample.mean);
         // Differences that are due to rounding alone do not count as scatter.
         let scatters = |width: &f64| *width > 1e-12 * mean.abs();

@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 use slipfront_base::number_format::exact;
+use slipfront_study::Unknown;
 use slipfront_study::text_table::table;
+use slipfront_study::unknown::with_unit;
 
 use crate::design::Design;
 use crate::shapes::number;
@@ -25,11 +27,7 @@ pub(crate) struct FoundNumber {
 impl FoundNumber {
     /// A number with its unit.
     fn with_unit(&self, number: f64) -> String {
-        let unit = self
-            .unit
-            .as_ref()
-            .map_or(String::new(), |unit| format!(" {unit}"));
-        exact(number) + &unit
+        with_unit(exact(number), self.unit.as_deref())
     }
 
     /// The key with its value, for a sentence.
@@ -38,7 +36,7 @@ impl FoundNumber {
     }
 
     /// A sentence on a number at an end of its range.
-    pub(crate) fn at_an_end(&self) -> Option<String> {
+    pub(crate) fn end_of_range_note(&self) -> Option<String> {
         let [from, to] = self.range;
         let near = NEAR_AN_END * (to - from);
         let is_near = self.value - from <= near || to - self.value <= near;
@@ -74,11 +72,7 @@ pub(crate) fn numbers_found(design: &Design, shares: Option<&[f64]>) -> Vec<Foun
 /// Names of the columns of unknowns in tables, as `texture.0.lambda (um)`.
 pub(crate) fn columns_of_unknowns(design: &Design) -> Vec<String> {
     let unknowns = design.shapes.iter().flat_map(|shapes| &shapes.unknowns);
-    let name = |unknown: &slipfront_study::Unknown| match unknown.unit() {
-        Some(unit) => format!("{} ({unit})", unknown.key()),
-        None => unknown.key().to_owned(),
-    };
-    unknowns.map(name).collect()
+    unknowns.map(Unknown::column).collect()
 }
 
 /// Cells of the columns of unknowns.

@@ -44,7 +44,7 @@ impl OpenSearch {
             RatedTexture { proposal, loss }
         });
         let found: Vec<RatedTexture> = found.collect();
-        self.search.tell(&found);
+        self.search.add_losses(&found);
     }
 
     /// The best texture with a known loss, and its loss.

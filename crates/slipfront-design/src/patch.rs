@@ -155,7 +155,7 @@ mod tests {
     use super::*;
     use crate::slider_blocks::tests::whole;
 
-    fn of(patch: Patch, grid: &SliderBlocks) -> Vec<f64> {
+    fn growth_of_patch(patch: Patch, grid: &SliderBlocks) -> Vec<f64> {
         let draft = PatchDraft {
             patches: vec![patch],
             drawn: None,
@@ -172,7 +172,7 @@ mod tests {
             angle: 0.5 * std::f64::consts::PI,
             form: Form::Rectangle,
         };
-        let growth = of(strip, &whole([5, 4], [false; 2]));
+        let growth = growth_of_patch(strip, &whole([5, 4], [false; 2]));
         for (block, growth) in growth.iter().enumerate() {
             let distance = (block % 5).abs_diff(2) as f64;
             assert_eq!(*growth, distance - 0.5);
@@ -187,7 +187,7 @@ mod tests {
             angle: 0.3,
             form: Form::Ellipse,
         };
-        let growth = of(disc, &whole([8, 8], [true, false]));
+        let growth = growth_of_patch(disc, &whole([8, 8], [true, false]));
         let expected = |x: f64, y: f64| (x * x + y * y).sqrt() - 2.0;
         assert_eq!(growth[7], rounded(expected(1.0, 0.0)));
         assert_eq!(growth[8 * 7], rounded(expected(0.0, 7.0)));

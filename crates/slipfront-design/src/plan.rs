@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use slipfront_case::case_file::CaseError;
-use slipfront_run::estimate_cost::{StepTime, TimeRange};
+use slipfront_run::estimate_cost::StepTime;
 use slipfront_study::StudyError;
 
 use crate::design::Design;
@@ -34,9 +34,9 @@ pub struct DesignPlan {
     pub verdict_runs: usize,
     /// Largest cost of all runs, in steps times blocks, without steps during which a held drive is stopped.
     pub block_steps: f64,
-    /// Time of all runs, in s.
+    /// Bounds of the time of all runs, in s; infinite, or null in JSON, if a held drive may pause.
     #[serde(rename = "seconds")]
-    pub time: TimeRange,
+    pub time: [f64; 2],
 }
 
 impl DesignFile {
@@ -53,7 +53,7 @@ impl DesignFile {
         let designs = 1 + self.keys.front.len();
         let block_steps = designs as f64 * (search_work + verdict_work);
         Ok(DesignPlan {
-            name: self.name().to_owned(),
+            name: self.project.name.clone(),
             blocks: design.size(),
             unknowns: design.unknowns(),
             coverage_percent: design.limits.coverage,
@@ -63,7 +63,7 @@ impl DesignFile {
             search_runs: runs,
             verdict_runs,
             block_steps,
-            time: per_block_step(&design.evaluator)? * (block_steps / threads as f64),
+            time: per_block_step(&design.evaluator)?.map(|time| block_steps / threads as f64 * time),
         })
     }
 }
@@ -78,19 +78,17 @@ impl Design {
     }
 }
 
-/// Time of a block-step in s: the mean over the cases.
-fn per_block_step(evaluator: &Evaluator) -> Result<TimeRange, CaseError> {
-    let mut sum = TimeRange::default();
+/// Bounds of the time of a block-step in s: the means over the cases.
+fn per_block_step(evaluator: &Evaluator) -> Result<[f64; 2], CaseError> {
+    let mut sum = [0.0; 2];
     for subject in &evaluator.subjects {
         let case = subject.case(None, 0, Fidelity::Fine)?;
         let steps = case.expected_steps();
-        let time = StepTime::of(&case).of_steps(&steps);
+        let time = StepTime::measure(&case).of_steps(&steps);
         let blocks = case.model.n_blocks() as f64;
-        sum = sum
-            + TimeRange {
-                least: time.least / (steps.steps[0] * blocks),
-                most: time.most / (steps.steps[1] * blocks),
-            };
+        for k in 0..2 {
+            sum[k] += time[k] / (steps.steps[k] * blocks);
+        }
     }
-    Ok(sum * (1.0 / evaluator.subjects.len() as f64))
+    Ok(sum.map(|sum| 1.0 / evaluator.subjects.len() as f64 * sum))
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde::Serialize;
-use slipfront::opening;
+use slipfront::block_sets;
 use slipfront_base::number_format::{count, four_digits, with_half_width, with_si_prefix};
 use slipfront_base::text::{COLUMNS, note, wrapped};
 use slipfront_case::arrays::{npy_of_mask, png_of_mask};
@@ -23,7 +23,7 @@ use crate::mean::Mean;
 use crate::numbers::{FoundNumber, columns_of_unknowns, numbers_at, numbers_found, table_of_numbers};
 use crate::search::Rejected;
 use crate::sensitivity::Changed;
-use crate::stages::{SearchLength, Tried};
+use crate::stages::{RatedDraft, SearchLength};
 use crate::subject::{Fidelity, MASK, masked};
 use crate::tolerance::WithinTolerance;
 use crate::verdict::{OnFresh, Verdict};
@@ -167,24 +167,18 @@ impl Report<'_> {
             in_memory: Some(&in_memory),
         };
         let file = CaseFile::parse(&first.unwrap_or_default(), CASE, &[])?;
-        Ok(Case::to_run_with(
-            file,
-            "case",
-            files,
-            &mut |_| true,
-            Ranks::ALONE,
-        )?)
+        Ok(Case::to_run(file, "case", files, &mut |_| true, Ranks::ALONE)?)
     }
 
     /// Properties of a texture. `drawn` is the smallest width of its shapes in blocks, if they are known.
     fn as_meshed(&self, design: &Design, texture: &[bool], case: &Case, drawn: Option<f64>) -> AsMeshed {
         let grid = &design.evaluator.grid;
         let size = case.scales.block_size;
-        let width = |set: &[bool]| opening::width(&grid.lattice, set).map(|blocks| blocks as f64 * size);
+        let width = |set: &[bool]| block_sets::width(&grid.lattice, set).map(|blocks| blocks as f64 * size);
         let area = 0.01 * grid.percent(texture) * grid.n_blocks() as f64 * size * size;
         AsMeshed {
             coverage_percent: grid.percent(texture),
-            features: opening::n_pieces(&grid.lattice, texture),
+            features: block_sets::n_pieces(&grid.lattice, texture),
             feature_m: drawn.map_or_else(|| width(texture), |drawn| Some(drawn * size)),
             gap_m: width(&grid.others(texture)),
             writing_length_m: self.file.line_spacing().map(|spacing| area / spacing),
@@ -302,7 +296,7 @@ impl Report<'_> {
             .into_iter()
             .chain(losses(&outcome.tried, verdict))
             .chain(design.notes())
-            .chain(numbers.iter().filter_map(FoundNumber::at_an_end))
+            .chain(numbers.iter().filter_map(FoundNumber::end_of_range_note))
             .chain(thick);
         text.extend(sentences.map(|sentence| note(&sentence, COLUMNS)));
         let lengths = case.file.lengths_of_a_block();
@@ -356,7 +350,7 @@ fn evaluations(design: &Design, outcome: &Outcome, to: &mut impl Write) -> Resul
 
 /// Notes on everything that counts as lost: drafts of the search, textures on fresh surfaces, and the design
 /// under changes.
-fn losses(tried: &[Tried], verdict: &Verdict) -> Vec<String> {
+fn losses(tried: &[RatedDraft], verdict: &Verdict) -> Vec<String> {
     let drafts = tried
         .iter()
         .enumerate()

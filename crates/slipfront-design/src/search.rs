@@ -14,7 +14,7 @@ use std::sync::Arc;
 use serde::Serialize;
 use slipfront_base::number_format::count;
 
-use crate::named::Named;
+use crate::named_patterns::Named;
 use crate::space::{Draft, Space};
 use crate::start::{GENERATION, Start};
 use slipfront_study::draws::Draws;
@@ -161,7 +161,7 @@ impl Search {
     }
 
     /// Takes the losses of proposed textures, in their order.
-    pub(crate) fn tell(&mut self, found: &[RatedTexture]) {
+    pub(crate) fn add_losses(&mut self, found: &[RatedTexture]) {
         let finite: Vec<RatedTexture> = found
             .iter()
             .filter(|found| found.loss.is_finite())
@@ -174,14 +174,14 @@ impl Search {
                 continue;
             };
             if let Some(start) = self.starts.iter_mut().find(|start| start.number == *number) {
-                start.tell(*loss, normal);
+                start.add_loss(*loss, normal);
             }
         }
         self.starts.retain(|start| !start.has_ended(&self.space));
     }
 
-    /// A proposal for a texture of the caller; its loss can be passed to [`tell`](Self::tell) as if the
-    /// search had proposed it.
+    /// A proposal for a texture of the caller; its loss can be passed to [`add_losses`](Self::add_losses) as
+    /// if the search had proposed it.
     pub(crate) fn of_other(&self, texture: Vec<bool>) -> Proposal {
         Proposal {
             origin: "another search".to_owned(),

@@ -6,7 +6,7 @@ use slipfront_case::case_file::{CaseError, DriveSpeed};
 use slipfront_case::quantity::Speed;
 use slipfront_case::texture_file::textured_blocks;
 
-use crate::evaluate::{Evaluator, Keep, RunCache};
+use crate::evaluate::Evaluator;
 use crate::judge::{Contender, Judge, Surfaces};
 use crate::mean::Mean;
 use crate::slider_blocks::SliderBlocks;
@@ -78,14 +78,12 @@ const SPEEDS: [(&str, f64); 2] = [
     ("three times the speed", 3.0),
 ];
 
-impl Judge<'_> {
+impl<'r> Judge<'_, 'r> {
     /// All changes, for the design and another texture.
     pub(crate) fn sensitivity(
-        &self,
+        &mut self,
         design: &Contender,
         other: Option<&Contender>,
-        known: &mut RunCache,
-        keep: &mut Keep,
     ) -> Result<Sensitivity, StudyError> {
         let mut found = Sensitivity::default();
         for (change, shift) in SHIFTS {
@@ -94,14 +92,13 @@ impl Judge<'_> {
                 texture: moved(&self.evaluator.grid, &design.texture, shift).into(),
                 shapes: None,
             };
-            let changed = self.under(change, &shifted, other, known, keep)?;
+            let changed = self.under(change, &shifted, other)?;
             found.changed.push(changed);
         }
         for (change, factor) in SPEEDS {
             match self.evaluator.at_speed(factor) {
                 Ok(evaluator) => {
-                    let judge = self.with(&evaluator);
-                    let changed = judge.under(change, design, other, known, keep)?;
+                    let changed = self.with(&evaluator).under(change, design, other)?;
                     found.changed.push(changed);
                 }
                 Err(error) => found.leave_out(change, &error),
@@ -110,8 +107,8 @@ impl Judge<'_> {
         let change = "blocks of half the size";
         match self.on_finer_blocks(design, other) {
             Ok((evaluator, design, other)) => {
-                let judge = self.with(&evaluator);
-                let changed = judge.under(change, &design, other.as_ref(), known, keep)?;
+                let other = other.as_ref();
+                let changed = self.with(&evaluator).under(change, &design, other)?;
                 found.changed.push(changed);
             }
             Err(error) => found.leave_out(change, &error),
@@ -142,38 +139,39 @@ impl Judge<'_> {
     }
 
     /// A judge of other cases.
-    fn with<'a>(&'a self, evaluator: &'a Evaluator) -> Judge<'a> {
-        Judge { evaluator, ..*self }
+    fn with<'a>(&'a mut self, evaluator: &'a Evaluator) -> Judge<'a, 'r> {
+        Judge {
+            evaluator,
+            runs: self.runs,
+            asks_for_numbers: self.asks_for_numbers,
+        }
     }
 
     /// A texture and another one under a change.
     fn under(
-        &self,
+        &mut self,
         change: &str,
         design: &Contender,
         other: Option<&Contender>,
-        known: &mut RunCache,
-        keep: &mut Keep,
     ) -> Result<Changed, StudyError> {
-        let surfaces = surfaces(self.evaluator);
+        let surfaces = &surfaces(self.evaluator);
         let both: Vec<&Contender> = std::iter::once(design).chain(other).collect();
-        self.run(&both, surfaces.clone(), known, keep)?;
+        self.run(&both, surfaces)?;
+        let trial = self.trial(design, surfaces);
         Ok(Changed {
             change: change.to_owned(),
-            loss: self.mean_loss(design, surfaces.clone(), known),
-            wished_star: self
-                .fresh_values(Some(design), 0, surfaces.clone(), known)
-                .wished_star,
-            within_tolerance: self.within(design, surfaces.clone(), known),
-            lost: self.lost(design, surfaces.clone(), known),
-            better_by: other.map(|other| self.difference(other, design, surfaces, known)),
+            loss: trial.mean_loss(),
+            wished_star: self.fresh_values(Some(design), 0, surfaces).wished_star,
+            within_tolerance: trial.within(),
+            lost: trial.lost(),
+            better_by: other.map(|other| self.difference(other, design, surfaces)),
         })
     }
 }
 
 /// Numbers of the surfaces of a change.
 fn surfaces(evaluator: &Evaluator) -> std::ops::Range<u64> {
-    let first = Surfaces::of(evaluator).judged.start;
+    let first = Surfaces::new(evaluator).judged.start;
     first..first + if evaluator.scatters() { SURFACES } else { 1 }
 }
 

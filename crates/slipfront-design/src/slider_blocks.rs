@@ -15,7 +15,7 @@ pub struct SliderBlocks {
 
 impl SliderBlocks {
     /// The blocks of the slider of a case.
-    pub fn of(case: &Case) -> Self {
+    pub fn from_case(case: &Case) -> Self {
         let lattice = case.model.lattice;
         let slider = case.model.slider();
         Self {

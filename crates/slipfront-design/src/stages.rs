@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-use crate::evaluate::{Evaluator, Keep, RunCache};
+use crate::evaluate::{Evaluator, Runs};
 use crate::search::{Proposal, RatedTexture, Rejected, Search};
 use crate::start::GENERATION;
 use crate::subject::Fidelity;
@@ -28,7 +28,7 @@ const REFINED_SURFACES: u64 = 4;
 
 /// A draft that was tried.
 #[derive(Clone, Debug)]
-pub(crate) struct Tried {
+pub(crate) struct RatedDraft {
     /// Whether the draft was tried on several surfaces with the step of the case, rather than on one with a
     /// coarse step.
     pub(crate) is_refined: bool,
@@ -61,7 +61,7 @@ pub struct SearchProgress {
     /// Runs done, of the search or of the verdict.
     pub runs: usize,
     /// Number of runs of the search, or largest number of runs of the verdict.
-    pub of: usize,
+    pub total: usize,
     /// Number of textures that the search has tried.
     pub textures: usize,
     /// Number of drafts that were not tried, since they have no legal texture.
@@ -160,7 +160,7 @@ pub(crate) struct Stages<'a> {
     /// Whether the allowed time ended before all runs were made.
     is_cut_short: bool,
     /// All drafts that were tried, in their order.
-    pub(crate) tried: Vec<Tried>,
+    pub(crate) tried: Vec<RatedDraft>,
 }
 
 impl<'a> Stages<'a> {
@@ -182,15 +182,14 @@ impl<'a> Stages<'a> {
     pub(crate) fn run(
         &mut self,
         bounds: &Bounds,
-        known: &mut RunCache,
-        keep: &mut Keep,
+        runs: &mut Runs,
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<Vec<Proposal>, StudyError> {
-        self.evaluator.check_reference(known, bounds.stop, keep)?;
+        self.evaluator.check_reference(runs)?;
         let explored = explored(bounds.runs);
         while self.runs < explored && self.has_time(bounds, false) {
             let proposals = self.ask(self.batch(bounds), bounds)?;
-            if !self.try_out(proposals, false, bounds, known, keep, watch)? {
+            if !self.try_out(proposals, false, bounds, runs, watch)? {
                 break;
             }
         }
@@ -201,10 +200,10 @@ impl<'a> Stages<'a> {
         // Each draft takes as many runs as there are surfaces, so fewer drafts keep the number of
         // simultaneous runs about equal.
         let refined_batch = (self.batch(bounds) / surfaces).max(GENERATION);
-        let mut goes_on = self.try_out(best, true, bounds, known, keep, watch)?;
+        let mut goes_on = self.try_out(best, true, bounds, runs, watch)?;
         while goes_on && self.runs < bounds.runs && self.has_time(bounds, true) {
             let proposals = self.ask(refined_batch, bounds)?;
-            goes_on = self.try_out(proposals, true, bounds, known, keep, watch)?;
+            goes_on = self.try_out(proposals, true, bounds, runs, watch)?;
         }
         let best = self.search.best().iter();
         Ok(best.map(|found| found.proposal.clone()).collect())
@@ -271,44 +270,34 @@ impl<'a> Stages<'a> {
         proposals: Vec<Proposal>,
         is_refined: bool,
         bounds: &Bounds,
-        known: &mut RunCache,
-        keep: &mut Keep,
+        runs: &mut Runs,
         watch: &mut dyn FnMut(&SearchProgress),
     ) -> Result<bool, StudyError> {
         let (surfaces, fidelity) = self.stage(is_refined);
         let textures: Vec<_> = proposals.iter().map(|found| Arc::clone(&found.texture)).collect();
         let wanted = self.evaluator.wanted(&textures, surfaces.clone(), fidelity);
-        self.evaluator.run(&wanted, known, bounds.stop, keep)?;
+        self.evaluator.run(&wanted, runs)?;
         // Runs that are known already count, too, so a continued search equals one that never stopped.
         self.runs += wanted.len();
-        let found: Vec<RatedTexture> = proposals
-            .into_iter()
-            .map(|proposal| {
-                let loss = self
-                    .evaluator
-                    .loss(&proposal.texture, surfaces.clone(), fidelity, known);
-                RatedTexture { proposal, loss }
-            })
-            .collect();
-        for RatedTexture { proposal, loss } in &found {
-            let lost = if loss.is_finite() {
-                None
-            } else {
-                self.evaluator
-                    .lost(&proposal.texture, surfaces.clone(), fidelity, known)
-            };
-            self.tried.push(Tried {
+        let mut found = Vec::new();
+        for proposal in proposals {
+            let trial = self
+                .evaluator
+                .trial(&proposal.texture, surfaces.clone(), fidelity, runs.known);
+            let loss = trial.loss();
+            self.tried.push(RatedDraft {
                 is_refined,
                 origin: proposal.origin.clone(),
                 texture: Arc::clone(&proposal.texture),
                 shares: proposal.shares(),
-                loss: *loss,
-                lost,
+                loss,
+                lost: if loss.is_finite() { None } else { trial.lost() },
             });
+            found.push(RatedTexture { proposal, loss });
         }
         // The limits may leave no new texture: then later batches have none, either.
         let has_any = !found.is_empty();
-        self.search.tell(&found);
+        self.search.add_losses(&found);
         watch(&self.progress(bounds, is_refined));
         Ok(has_any)
     }
@@ -317,7 +306,7 @@ impl<'a> Stages<'a> {
         let best = self.search.best().first();
         SearchProgress {
             runs: self.runs,
-            of: bounds.runs,
+            total: bounds.runs,
             textures: self.n_textures(),
             rejected: self.rejected().drafts,
             stage: if is_refined {

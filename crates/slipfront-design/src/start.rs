@@ -1,7 +1,7 @@
 //! A start of a search: drafts that are drawn around a mean, which moves towards the better ones.
 
 use crate::space::{Draft, Space};
-use slipfront_study::adaptation::Adaptation;
+use slipfront_study::adaptive_search::Adaptation;
 use slipfront_study::draws::Draws;
 
 /// Number of drafts in a generation, after which the distribution adapts to their losses. With more drafts,
@@ -62,7 +62,7 @@ impl Start {
     }
 
     /// Takes the loss of a draft of this start.
-    pub(crate) fn tell(&mut self, loss: f64, normal: &[f64]) {
+    pub(crate) fn add_loss(&mut self, loss: f64, normal: &[f64]) {
         self.losses.push((loss, normal.to_vec()));
         // Adaptation compares drafts of one distribution, which therefore stays fixed until all losses of a
         // generation are known.
@@ -168,7 +168,7 @@ mod tests {
         while !start.has_ended(&space) {
             let (drawn, normal) = start.draw(&space, &mut draws);
             last = distance(drawn);
-            start.tell(last, &normal);
+            start.add_loss(last, &normal);
             asked += 1;
             assert!(asked < 5000);
         }

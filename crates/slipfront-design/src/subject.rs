@@ -113,7 +113,7 @@ impl Subject {
             let onset_end = bare.expected.onset_end_star * load_factor;
             subject.ends = [SEARCHED, JUDGED * SEARCHED].map(|times| times * onset_end);
         }
-        subject.physics = physics(&subject.case(None, 0, Fidelity::Fine)?, None)?;
+        subject.physics = physics(&subject.case(None, 0, Fidelity::Fine)?)?;
         Ok(subject)
     }
 
@@ -153,7 +153,7 @@ impl Subject {
             folder: Path::new(""),
             in_memory: Some(in_memory),
         };
-        Case::to_run_with(file, &self.name, files, &mut |_| true, Ranks::ALONE)
+        Case::to_run(file, &self.name, files, &mut |_| true, Ranks::ALONE)
     }
 
     /// Cost of a run in steps times blocks, without steps during which a held drive is stopped.

@@ -6,12 +6,13 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::evaluate::{Evaluator, Keep, RunCache, Wanted};
+use crate::evaluate::{Evaluator, Wanted};
 use crate::judge::{Contender, Judge, Surfaces};
 use crate::mean::Mean;
 use crate::sensitivity::{self, Sensitivity};
 use crate::subject::Fidelity;
 use crate::tolerance::WithinTolerance;
+use crate::trial::Trial;
 use crate::wish::Measured;
 use slipfront_study::StudyError;
 
@@ -93,11 +94,11 @@ pub(crate) struct Judged {
     pub(crate) verdict: Verdict,
 }
 
-impl Judge<'_> {
+impl Judge<'_, '_> {
     /// Largest number of runs of a verdict on `named` patterns, and their cost in steps times blocks.
     /// `beside` is the number of textures that are judged in any case.
     pub(crate) fn most_runs(evaluator: &Evaluator, named: usize, beside: usize) -> (usize, f64) {
-        let Surfaces { compared, judged } = Surfaces::of(evaluator);
+        let Surfaces { compared, judged } = Surfaces::new(evaluator);
         let n = |surfaces: Range<u64>| (surfaces.end - surfaces.start) as usize;
         let [cases, compared, judged] = [evaluator.subjects.len(), n(compared), n(judged)];
         // The judged textures include the slider without texture, the best named pattern and the design.
@@ -113,32 +114,30 @@ impl Judge<'_> {
     /// the verdict on it; none if there is no texture. The textures `beside` them are judged in any case; the
     /// groove is the first of them if it is legal.
     pub(crate) fn verdict(
-        &self,
+        &mut self,
         searched: &[Contender],
         named: &[Contender],
         beside: &[Contender],
-        known: &mut RunCache,
-        keep: &mut Keep,
     ) -> Result<Option<Judged>, StudyError> {
-        let Surfaces { compared, judged } = Surfaces::of(self.evaluator);
+        let Surfaces { compared, judged } = Surfaces::new(self.evaluator);
         let searched = &searched[..searched.len().min(MOST_FINALISTS)];
-        let named = &self.shortlist(named, known, keep)?;
+        let named = &self.shortlist(named)?;
         let all: Vec<&Contender> = searched.iter().chain(named).collect();
-        self.run(&all, compared.clone(), known, keep)?;
-        let by_loss = |contenders: &[Contender], known: &RunCache| {
-            let loss = |contender: &Contender| self.loss(contender, compared.clone(), known);
+        self.run(&all, &compared)?;
+        let by_loss = |contenders: &[Contender]| {
+            let loss = |contender: &Contender| self.trial(contender, &compared).loss();
             let best = contenders.iter().min_by(|a, b| loss(a).total_cmp(&loss(b)));
             best.cloned()
         };
-        let (winner, best_named) = (by_loss(searched, known), by_loss(named, known));
+        let (winner, best_named) = (by_loss(searched), by_loss(named));
         let without_search = || best_named.clone().filter(|_| !self.asks_for_numbers);
         let Some(first) = winner.clone().or_else(without_search) else {
             return Ok(None);
         };
         let to_judge: Vec<&Contender> = winner.iter().chain(&best_named).chain(beside).collect();
-        self.run(&to_judge, judged.clone(), known, keep)?;
+        self.run(&to_judge, &judged)?;
         // If both are lost, neither is better.
-        let is_better = |named: &Contender| self.difference(named, &first, judged.clone(), known).low() > 0.0;
+        let is_better = |named: &Contender| self.difference(named, &first, &judged).low() > 0.0;
         let is_named =
             !self.asks_for_numbers && (winner.is_none() || !best_named.as_ref().is_none_or(is_better));
         let design = match &best_named {
@@ -161,20 +160,19 @@ impl Judge<'_> {
             .as_ref()
             .filter(|named| named.texture != design.texture)
             .or(beside.first().filter(|other| other.texture != design.texture));
-        let sensitivity = self.sensitivity(&design, other, known, keep)?;
-        let on_fresh = |contender: Option<&Contender>, known: &RunCache| {
-            self.on_fresh(contender, &design, judged.clone(), known)
-        };
+        let sensitivity = self.sensitivity(&design, other)?;
+        let on_fresh = |contender: Option<&Contender>| self.on_fresh(contender, &design, &judged);
+        let loss = |surfaces: &Range<u64>| self.trial(&design, surfaces).loss();
         let verdict = Verdict {
             surfaces: judged.end - judged.start,
             first_surface: judged.start,
-            design: on_fresh(Some(&design), known),
+            design: on_fresh(Some(&design)),
             is_named,
             others: std::iter::once(None)
                 .chain(others.iter().copied().map(Some))
-                .map(|other| on_fresh(other, known))
+                .map(on_fresh)
                 .collect(),
-            optimism: self.loss(&design, judged.clone(), known) - self.loss(&design, compared, known),
+            optimism: loss(&judged) - loss(&compared),
             sensitivity,
         };
         let compared = others
@@ -195,16 +193,16 @@ impl Judge<'_> {
     }
 
     /// The named patterns that are best on the surface of the search, with the step of the case.
-    fn shortlist(
-        &self,
-        named: &[Contender],
-        known: &mut RunCache,
-        keep: &mut Keep,
-    ) -> Result<Vec<Contender>, StudyError> {
+    fn shortlist(&mut self, named: &[Contender]) -> Result<Vec<Contender>, StudyError> {
         let textures: Vec<_> = named.iter().map(|named| Arc::clone(&named.texture)).collect();
         let wanted = self.evaluator.wanted(&textures, 0..1, Fidelity::Fine);
-        self.evaluator.run(&wanted, known, self.stop, keep)?;
-        let loss = |named: &Contender| self.evaluator.loss(&named.texture, 0..1, Fidelity::Fine, known);
+        self.evaluator.run(&wanted, self.runs)?;
+        let loss = |named: &Contender| {
+            let trial = self
+                .evaluator
+                .trial(&named.texture, 0..1, Fidelity::Fine, self.runs.known);
+            trial.loss()
+        };
         let mut named = named.to_vec();
         named.sort_by(|a, b| loss(a).total_cmp(&loss(b)));
         named.dedup_by(|a, b| a.texture == b.texture);
@@ -213,15 +211,10 @@ impl Judge<'_> {
     }
 
     /// Values of a texture on fresh surfaces; without a texture those of the bare slider.
-    fn on_fresh(
-        &self,
-        contender: Option<&Contender>,
-        design: &Contender,
-        surfaces: Range<u64>,
-        known: &RunCache,
-    ) -> OnFresh {
-        let given = |subject: usize| self.fresh_values(contender, subject, surfaces.clone(), known);
-        let loss = contender.map(|contender| self.mean_loss(contender, surfaces.clone(), known));
+    fn on_fresh(&self, contender: Option<&Contender>, design: &Contender, surfaces: &Range<u64>) -> OnFresh {
+        let given = |subject: usize| self.fresh_values(contender, subject, surfaces);
+        let trial = contender.map(|contender| self.trial(contender, surfaces));
+        let loss = trial.as_ref().map(Trial::mean_loss);
         OnFresh {
             name: contender
                 .map_or("no texture", |contender| &contender.name)
@@ -231,11 +224,11 @@ impl Judge<'_> {
             loss: loss.map_or(f64::NAN, |loss| loss.mean),
             loss_half_width: loss.and_then(|loss| loss.half_width),
             loss_deviation: loss.and_then(|loss| loss.deviation),
-            within_tolerance: contender.and_then(|found| self.within(found, surfaces.clone(), known)),
-            lost: contender.and_then(|contender| self.lost(contender, surfaces.clone(), known)),
+            within_tolerance: trial.as_ref().and_then(Trial::within),
+            lost: trial.as_ref().and_then(Trial::lost),
             design_is_better_by: contender
                 .filter(|contender| contender.texture != design.texture)
-                .map(|contender| self.difference(contender, design, surfaces.clone(), known)),
+                .map(|contender| self.difference(contender, design, surfaces)),
         }
     }
 
@@ -244,8 +237,7 @@ impl Judge<'_> {
         &self,
         contender: Option<&Contender>,
         subject: usize,
-        surfaces: Range<u64>,
-        known: &RunCache,
+        surfaces: &Range<u64>,
     ) -> FreshValues {
         let run = |surface| Wanted {
             subject,
@@ -253,10 +245,10 @@ impl Judge<'_> {
             surface,
             fidelity: Fidelity::Verdict,
         };
-        let found: Vec<Measured> = surfaces
-            .filter_map(|surface| self.evaluator.ended(&run(surface), known).ok())
-            .collect();
-        let mean = |of: &dyn Fn(&Measured) -> f64| Mean::of(&found.iter().map(of).collect::<Vec<_>>());
+        let ended = |surface| self.evaluator.ended(&run(surface), self.runs.known).ok();
+        let found: Vec<Measured> = surfaces.clone().filter_map(ended).collect();
+        let mean =
+            |of: &dyn Fn(&Measured) -> f64| Mean::from_values(&found.iter().map(of).collect::<Vec<_>>());
         let kinetic: Option<Vec<f64>> = found.iter().map(|found| found.kinetic_star).collect();
         let quantity = self.evaluator.wish().quantity();
         FreshValues {
@@ -264,7 +256,7 @@ impl Judge<'_> {
             wished_star: Some(mean(&|found| found.get(quantity))).filter(|mean| mean.mean.is_finite()),
             static_friction_star: mean(&|found| found.largest_star),
             first_peak_star: mean(&|found| found.first_peak_star),
-            kinetic_friction_star: kinetic.map(|values| Mean::of(&values)),
+            kinetic_friction_star: kinetic.map(|values| Mean::from_values(&values)),
         }
     }
 }

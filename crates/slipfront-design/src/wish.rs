@@ -120,7 +120,7 @@ pub struct Measured {
 
 impl Measured {
     /// The numbers from a summary.
-    pub(crate) fn of(summary: &Summary) -> Self {
+    pub(crate) fn from_summary(summary: &Summary) -> Self {
         Self {
             largest_star: summary.mu_star_max,
             first_peak_star: summary.static_friction_star,

@@ -18,7 +18,7 @@ use slipfront_design::{
     Bounds, DESIGNS, Design, DesignFile, DesignFolder, DesignKeys, DesignStage, Outcome, RunCache, RunCost,
 };
 use slipfront_study::StudyError;
-use slipfront_study::project_folder::{Extent, VerifyStudyError};
+use slipfront_study::project_folder::Extent;
 use slipfront_study::verify::verify;
 
 use crate::reference_page::{expect_page, with_keys};
@@ -86,7 +86,7 @@ fn design_files_are_true() {
     for entry in fs::read_dir(root.join("cases/designs")).unwrap() {
         let file = DesignFile::load(&entry.unwrap().path()).unwrap_or_else(|error| panic!("{error}"));
         file.design()
-            .unwrap_or_else(|error| panic!("{}: {error}", file.name()));
+            .unwrap_or_else(|error| panic!("{}: {error}", file.project.name));
     }
     let text = fs::read_to_string(root.join("docs/reference/design-file.md")).unwrap();
     for key in [
@@ -880,7 +880,7 @@ fn results_belong_to_one_search() {
     assert_eq!(fs::read(out.join("mask.npy")).unwrap(), before);
     // Results follow from a part of the runs.
     let verdict = verify(&out, &[DESIGNS], Extent::Derived, &AtomicBool::new(false));
-    assert!(matches!(verdict, Err(VerifyStudyError::UnfinishedSearch { .. })));
+    assert!(matches!(verdict, Err(StudyError::Unfinished { .. })));
     drop(opened);
     forbid(7);
     let file = DesignFile::parse(text, "design.toml", "design", folder.path()).unwrap();

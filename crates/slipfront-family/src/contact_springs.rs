@@ -1,14 +1,13 @@
 //! Springs in contact.
 
-use std::sync::Arc;
-
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{chain_slip_force, static_over_kinetic_of_springs};
 use slipfront::lattice::{K_DRIVE, K_STRAIGHT};
+use slipfront::observe::CurveRow;
 use slipfront::surface::{Coefficients, Load};
-use slipfront::{AfterBreak, ContactSprings, Drive, Friction, Lattice, Model, Slider, Surface, scales};
+use slipfront::{AfterBreak, ContactSprings, Drive, Lattice, Model, Slider, Surface, scales};
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::Chapter;
 use crate::error::FamilyError;
 use crate::fronts::front_speed_in_a_chain;
 use crate::runs::Experiment;
@@ -37,20 +36,16 @@ fn ratio(w: f64, redraw: Option<u64>) -> Result<f64, FamilyError> {
     let given = Coefficients::given((0..400).map(threshold).collect(), vec![0.0; 400]);
     let surface = Surface::new(given, vec![false; 400], Load::Redistributed, 1.0)?;
     let stiffness = SOFTNESS * K_DRIVE;
-    let (v_star, dt_star, damping) = (V_STAR, DT_STAR, scales::damping(OMEGA_STAR));
-    let law = Friction::ContactSprings(ContactSprings {
+    let damping = scales::damping(OMEGA_STAR);
+    let law = ContactSprings {
         stiffness,
         after_break: AfterBreak::FormsAgain { redraw },
-    });
-    let model = Model::new(lattice, surface, Drive::along_x(v_star), damping, 0.0, law);
-    let experiment = Experiment {
-        model: Arc::new(model),
-        dt_star,
-        state: None,
     };
-    let length = (1.0 / stiffness / v_star / dt_star) as usize;
+    let model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 0.0, law);
+    let experiment = Experiment::at_rest(model, DT_STAR);
+    let length = (1.0 / stiffness / V_STAR / DT_STAR) as usize;
     let run = experiment.run("springs in contact", 50 * length as u64)?;
-    let force = |row: &slipfront::observe::CurveRow| row.point.mu_star - damping * v_star;
+    let force = |row: &CurveRow| row.point.mu_star - damping * V_STAR;
     // The slider begins at rest, and reaches its speed long before the first spring breaks.
     let peak = run.rows[length / 2..].iter().map(force).fold(0.0, f64::max);
     let sliding = &run.rows[10 * length..];
@@ -85,28 +80,16 @@ fn tolerance(w: f64, exact: f64, redrawn: bool) -> (f64, &'static str) {
 /// its first block.
 fn pull(n: usize, stiffness: f64) -> f64 {
     let lattice = Lattice::free(n, 1);
-    let law = Friction::ContactSprings(ContactSprings {
+    let law = ContactSprings {
         stiffness,
         after_break: AfterBreak::FormsAgain { redraw: None },
-    });
+    };
     let surface = Surface::uniform(&lattice, 1.0, 0.0);
     let mut slider = Slider::default();
     slider.attach(n, |b| b == 0, &Alone);
-    let model = Model::new(
-        lattice,
-        surface,
-        Drive::along_x(CHAIN_V_STAR),
-        CHAIN_DAMPING,
-        0.0,
-        law,
-    )
-    .with_slider(slider);
-    let experiment = Experiment {
-        model: Arc::new(model),
-        dt_star: CHAIN_DT_STAR,
-        state: None,
-    };
-    let mut simulation = experiment.begin();
+    let drive = Drive::along_x(CHAIN_V_STAR);
+    let model = Model::new(lattice, surface, drive, CHAIN_DAMPING, 0.0, law).with_slider(slider);
+    let mut simulation = Experiment::at_rest(model, CHAIN_DT_STAR).begin();
     while simulation.snapshot().totals.n_slipping == 0 {
         simulation.step();
     }
@@ -135,51 +118,40 @@ const FRONTS: [[f64; 3]; 7] = [
     [0.25, 0.9, 1.12465],
 ];
 
-pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
-    let mut answers = Vec::new();
+pub(crate) fn compare(chapter: &mut Chapter) -> Result<(), FamilyError> {
     for [softness, prestress, expected] in FRONTS {
         let law = ContactSprings {
             stiffness: softness * K_STRAIGHT,
             after_break: AfterBreak::Slides,
         };
-        answers.push(Answer::new(
+        let found = front_speed_in_a_chain(0.0, prestress, law.into(), FRONT_DT_STAR)?;
+        chapter.add(
             format!("front speed v/c, k_t = {softness} K, prestress {prestress}"),
-            [
-                expected,
-                front_speed_in_a_chain(0.0, prestress, law.into(), FRONT_DT_STAR)?,
-            ],
-            (
-                0.5 * K_STRAIGHT.sqrt() * FRONT_DT_STAR * expected * expected,
-                "springs break at whole steps, up to half a step from the interval l/v",
-            ),
-        ));
+            [expected, found],
+            0.5 * K_STRAIGHT.sqrt() * FRONT_DT_STAR * expected * expected,
+            "springs break at whole steps, up to half a step from the interval l/v",
+        );
     }
     for (redraw, which) in [(None, "kept"), (Some(5), "redrawn")] {
         for w in [0.05, 0.1, 0.2] {
             let exact = static_over_kinetic_of_springs(w, redraw.is_some());
-            answers.push(Answer::new(
+            let (tolerance, reason) = tolerance(w, exact, redraw.is_some());
+            chapter.add(
                 format!("ratio of static to kinetic friction of a rigid slider, w = {w}, thresholds {which}"),
                 [exact, ratio(w, redraw)?],
-                tolerance(w, exact, redraw.is_some()),
-            ));
+                tolerance,
+                reason,
+            );
         }
     }
     for n in [1, 2, 5, 20] {
         let exact = chain_slip_force(n, K_STRAIGHT, 0.1);
-        answers.push(Answer::new(
+        chapter.add(
             format!("F_T at the first break in a chain of {n} contact springs, k_t = 0.1"),
             [exact, pull(n, 0.1)],
-            (
-                CHAIN_V_STAR * (CHAIN_DAMPING * exact + K_DRIVE * CHAIN_DT_STAR),
-                "drag Ω V* Σu_i/u_1, and drive force of one step",
-            ),
-        ));
+            CHAIN_V_STAR * (CHAIN_DAMPING * exact + K_DRIVE * CHAIN_DT_STAR),
+            "drag Ω V* Σu_i/u_1, and drive force of one step",
+        );
     }
-    Ok(Chapter {
-        title: "Contact springs",
-        name: "contact-springs",
-        text: include_str!("text/contact_springs.md"),
-        answers,
-        picture: None,
-    })
+    Ok(())
 }

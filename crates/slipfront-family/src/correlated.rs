@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use slipfront::Lattice;
 use slipfront::surface::{Coefficients, CorrelatedField, Distribution, deviation_along};
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::Chapter;
 use crate::error::FamilyError;
 
 /// Seeds over which correlations are measured.
@@ -33,7 +33,7 @@ fn covariance(n: f64) -> f64 {
 }
 
 /// Largest difference between a block and the mean of its four parts, on a slider of 12 x 10 blocks.
-fn apart(length: f64) -> f64 {
+fn largest_difference(length: f64) -> f64 {
     let (nx, ny) = (12, 10);
     let parents = drawn(&Lattice::free(nx, ny), length, 1);
     let children = drawn(&Lattice::free(2 * nx, 2 * ny), 2.0 * length, 1);
@@ -45,28 +45,23 @@ fn apart(length: f64) -> f64 {
     parents.iter().enumerate().map(difference).fold(0.0, f64::max)
 }
 
-pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
-    let mut answers = Vec::new();
+pub(crate) fn compare(chapter: &mut Chapter) -> Result<(), FamilyError> {
     for length in [0.25, 1.0, 5.0] {
         let field = CorrelatedField::new(&Lattice::free(25, 25), length);
-        answers.push(Answer::new(
+        chapter.add(
             format!("variance of block means, ξ = {length} l"),
             [deviation_along(length).powi(4), field.variance_of_blocks()],
-            (
-                2e-9,
-                "oscillation by 2 exp(-9π²/4) along each axis within the node spacing",
-            ),
-        ));
+            2e-9,
+            "oscillation by 2 exp(-9π²/4) along each axis within the node spacing",
+        );
     }
     for length in [0.25, 1.0, 5.0] {
-        answers.push(Answer::new(
+        chapter.add(
             format!("largest difference between a block mean and the mean of its parts, ξ = {length} l"),
-            [0.0, apart(length)],
-            (
-                1e-13,
-                "sum of about 700 differences of error functions, each rounded to 1e-16",
-            ),
-        ));
+            [0.0, largest_difference(length)],
+            1e-13,
+            "sum of about 700 differences of error functions, each rounded to 1e-16",
+        );
     }
     let lattice = Lattice::free(usize::from(BLOCKS), 1);
     let mut products = [0.0; BLOCKS as usize];
@@ -79,20 +74,12 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
     for (n, product) in (0..BLOCKS).zip(products) {
         let exact = covariance(f64::from(n)) / covariance(0.0);
         let found = product / f64::from(SEEDS) / covariance(0.0).powi(2);
-        answers.push(Answer::new(
+        chapter.add(
             format!("correlation of block means at a distance of {n} l, ξ = {LENGTH} l"),
             [exact, found],
-            (
-                5.0 * ((1.0 + exact * exact) / f64::from(SEEDS)).sqrt(),
-                "five standard errors of a product of normal variates over the seeds 0 to 9999",
-            ),
-        ));
+            5.0 * ((1.0 + exact * exact) / f64::from(SEEDS)).sqrt(),
+            "five standard errors of a product of normal variates over the seeds 0 to 9999",
+        );
     }
-    Ok(Chapter {
-        title: "Spatially correlated coefficients",
-        name: "correlated",
-        text: include_str!("text/correlated.md"),
-        answers,
-        picture: None,
-    })
+    Ok(())
 }

@@ -5,9 +5,9 @@ use slipfront::exact_solutions::precursor_load;
 use slipfront::lattice::K_STRAIGHT;
 use slipfront::observe::{Precursors, Scheduled};
 use slipfront::{Edge, Stop};
-use slipfront_plot::{Response, Responses};
+use slipfront_plot::Response;
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::Chapter;
 use crate::error::FamilyError;
 use crate::runs::Experiment;
 
@@ -49,6 +49,9 @@ struct Longer {
     added: f64,
 }
 
+/// Events that are longer than all earlier ones, and the largest load of a run.
+type Events = (Vec<Longer>, f64);
+
 impl Longer {
     /// Relative error of the load, and its largest allowed values without and with the load that the drive
     /// has added.
@@ -61,7 +64,7 @@ impl Longer {
 impl Chain {
     /// Events that are longer than all earlier ones, and the largest load, of a run that ends when an event
     /// has crossed the chain; the load is infinite if none crosses it.
-    fn precursors(&self, slope: f64, dt_star: f64) -> Result<(Vec<Longer>, f64), FamilyError> {
+    fn precursors(&self, slope: f64, dt_star: f64) -> Result<Events, FamilyError> {
         let (n, v_star) = (f64::from(self.blocks), self.v_star);
         // Until the drive force would be 1.3 times the kinetic friction of the whole chain if the chain
         // stayed at rest.
@@ -82,11 +85,7 @@ impl Chain {
         while !has_crossed(&observer) {
             let observers = &mut [Scheduled::always(&mut observer)];
             let ended = simulation.advance(Stop::at_step(last_step), 10_000, observers);
-            let ended = ended.map_err(|source| FamilyError::Run {
-                name: "precursors".to_owned(),
-                source,
-            })?;
-            if ended.is_some() {
+            if ended.map_err(FamilyError::of_run("precursors"))?.is_some() {
                 break;
             }
         }
@@ -107,44 +106,31 @@ impl Chain {
                 });
             }
         }
-        let crosses = observer.crossing().is_some();
-        let largest = if crosses {
-            STATIC * simulation.peak().largest.mu_star
-        } else {
-            f64::INFINITY
-        };
-        Ok((longer, largest))
+        let largest = STATIC * simulation.peak().largest.mu_star;
+        let crossing = observer.crossing();
+        Ok((longer, crossing.map_or(f64::INFINITY, |_| largest)))
     }
 
-    /// Answers for the chain's runs under one pressure profile, and the events of the run with the finest
-    /// step.
-    fn answers(&self, slope: f64) -> Result<(Vec<Answer>, Vec<Longer>), FamilyError> {
-        let runs = self
-            .steps
-            .par_iter()
-            .map(|dt_star| self.precursors(slope, *dt_star));
-        let runs: Vec<_> = runs.collect::<Result<_, _>>()?;
+    /// Compares the chain's runs under one pressure profile, one for each step.
+    fn compare(&self, slope: f64, runs: &[Events], chapter: &mut Chapter) {
         let n = self.blocks;
-        let mut answers = Vec::new();
         let (mut largest, mut highest) = ([0.0; 3], KINETIC);
-        for (dt_star, (longer, peak)) in self.steps.iter().zip(&runs) {
+        for (dt_star, (longer, peak)) in self.steps.iter().zip(runs) {
             let beyond = longer.iter().filter(|event| event.length > 0.2);
             let errors: Vec<[f64; 3]> = beyond.map(|event| event.error(slope)).collect();
+            let count = errors.len();
             let rms = |k: usize| {
                 let squares: f64 = errors.iter().map(|error| error[k] * error[k]).sum();
-                (squares / errors.len() as f64).sqrt()
+                (squares / count as f64).sqrt()
             };
-            answers.push(Answer::new(
+            chapter.add(
                 format!(
-                    "{n} blocks, θ = {slope}, Δt* = {dt_star}: relative error of F_T, rms over {} events",
-                    errors.len()
+                    "{n} blocks, θ = {slope}, Δt* = {dt_star}: relative error of F_T, rms over {count} events"
                 ),
                 [0.0, rms(0)],
-                (
-                    rms(1),
-                    "force of the block ahead of the tip, and reloading of the driven block",
-                ),
-            ));
+                rms(1),
+                "force of the block ahead of the tip, and reloading of the driven block",
+            );
             for error in errors {
                 // An error that exceeds its own bound takes precedence over the largest error.
                 if (error[0] > error[2], error[0]) > (largest[0] > largest[2], largest[0]) {
@@ -155,67 +141,56 @@ impl Chain {
                 highest = *peak;
             }
         }
-        answers.push(Answer::new(
+        chapter.add(
             format!("{n} blocks, θ = {slope}: largest relative error of F_T in all runs"),
             [0.0, largest[0]],
-            (
-                largest[2],
-                "force of the same two blocks, and motion of the drive during the event",
-            ),
-        ));
+            largest[2],
+            "force of the same two blocks, and motion of the drive during the event",
+        );
         let [first, last] = [1.0 - slope, 1.0 + slope];
         let crossing = 2.0 * KAPPA * self.v_star / K_STRAIGHT.sqrt();
-        answers.push(Answer::new(
+        chapter.add(
             format!("{n} blocks, θ = {slope}: largest F_T/F_N, in the run with the largest error"),
             [KINETIC, highest],
-            (
-                (STATIC * (last + crossing) + (STATIC - KINETIC) * first) / f64::from(n),
-                "force of the same two blocks, and motion of the drive while sound crosses the chain and returns",
-            ),
-        ));
-        let finest = runs.into_iter().next_back().map(|(longer, _)| longer);
-        Ok((answers, finest.unwrap_or_default()))
+            (STATIC * (last + crossing) + (STATIC - KINETIC) * first) / f64::from(n),
+            "force of the same two blocks, and motion of the drive while sound crosses the chain and returns",
+        );
     }
 }
 
-pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
-    let pairs: Vec<(f64, &Chain)> = SLOPES
-        .into_iter()
-        .flat_map(|slope| CHAINS.iter().map(move |chain| (slope, chain)))
-        .collect();
-    let found = pairs.par_iter().map(|(slope, chain)| chain.answers(*slope));
+pub(crate) fn compare(chapter: &mut Chapter) -> Result<(), FamilyError> {
+    let pairs = SLOPES.map(|slope| CHAINS.each_ref().map(|chain| (slope, chain)));
+    let runs_of = |&(slope, chain): &(f64, &Chain)| {
+        let runs = chain
+            .steps
+            .par_iter()
+            .map(|dt_star| chain.precursors(slope, *dt_star));
+        runs.collect::<Result<Vec<Events>, FamilyError>>()
+    };
+    let found = pairs.as_flattened().par_iter().map(runs_of);
     let found: Vec<_> = found.collect::<Result<_, _>>()?;
-    let mut answers = Vec::new();
     let mut curves = Vec::new();
     let lengths: Vec<f64> = (1..=50).map(|k| 0.02 * f64::from(k)).collect();
-    for ((slope, chain), (of_chain, events)) in pairs.into_iter().zip(found) {
-        answers.extend(of_chain);
+    for (&(slope, chain), runs) in pairs.as_flattened().iter().zip(found) {
+        chain.compare(slope, &runs, chapter);
         // Four times as many points would hide the lines.
-        if chain.blocks != CHAINS[0].blocks {
+        let Some((finest, _)) = runs.last().filter(|_| chain.blocks == CHAINS[0].blocks) else {
             continue;
-        }
+        };
+        let load = |length| precursor_load(length, KINETIC, slope);
         curves.push(Response::of_formula(
             &format!("\u{3b8} = {slope}, exact"),
             &lengths,
-            |length| precursor_load(length, KINETIC, slope),
+            load,
         ));
-        let x: Vec<f64> = events.iter().map(|event| event.length).collect();
-        let loads: Vec<f64> = events.iter().map(|event| event.load).collect();
+        let x: Vec<f64> = finest.iter().map(|event| event.length).collect();
+        let loads: Vec<f64> = finest.iter().map(|event| event.load).collect();
         curves.push(Response::of_values(&format!("\u{3b8} = {slope}"), &x, &loads));
     }
-    Ok(Chapter {
-        title: "Driven at an edge: precursors",
-        name: "precursors",
-        text: include_str!("text/edge_drive.md"),
-        answers,
-        picture: Some((
-            "Load after each event that is longer than all earlier ones, against its length, for 100 blocks and three pressure profiles.",
-            Responses {
-                x_title: "event length over chain length".to_owned(),
-                y_title: "load F_T/F_N".to_owned(),
-                curves,
-                ..Responses::default()
-            },
-        )),
-    })
+    chapter.draw(
+        "Load after each event that is longer than all earlier ones, against its length, for 100 blocks and three pressure profiles.",
+        ["event length over chain length", "load F_T/F_N"],
+        curves,
+    );
+    Ok(())
 }

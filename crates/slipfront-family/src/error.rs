@@ -21,3 +21,11 @@ pub enum FamilyError {
     #[error(transparent)]
     Folder(#[from] FolderError),
 }
+
+impl FamilyError {
+    /// Turns the error of a run into one with its name.
+    pub(crate) fn of_run(name: &str) -> impl FnOnce(RunError) -> Self {
+        let name = name.to_owned();
+        |source| Self::Run { name, source }
+    }
+}

@@ -1,13 +1,11 @@
 //! Slip fronts, with and without drive springs.
 
-use std::sync::Arc;
-
 use slipfront::exact_solutions::front_speed;
 use slipfront::lattice::K_STRAIGHT;
 use slipfront::{DeadLoad, Drive, Friction, FrictionLaw, Lattice, Model, State, Surface};
-use slipfront_plot::{Response, Responses};
+use slipfront_plot::Response;
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::Chapter;
 use crate::error::FamilyError;
 use crate::runs::Experiment;
 
@@ -38,9 +36,8 @@ pub(crate) fn front_speed_in_a_chain(
     state.velocity.x[..5].fill(0.5 * sound * (1.0 - KINETIC) / K_STRAIGHT);
     let steps = (1.5 * BLOCKS as f64 / (0.75 * sound) / dt_star) as u64;
     let experiment = Experiment {
-        model: Arc::new(model),
-        dt_star,
         state: Some(state),
+        ..Experiment::at_rest(model, dt_star)
     };
     let run = experiment.run("fronts", steps)?;
     let first = run.simulation.snapshot().first_slip_time_star();
@@ -48,8 +45,7 @@ pub(crate) fn front_speed_in_a_chain(
     Ok((to - from) as f64 / (first[to] - first[from]) / sound)
 }
 
-pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
-    let mut answers = Vec::new();
+pub(crate) fn compare(chapter: &mut Chapter) -> Result<(), FamilyError> {
     let mut curves = vec![Response::of_formula(
         "no drive springs, exact",
         &(0..=50).map(|k| 0.4 + 0.01 * f64::from(k)).collect::<Vec<_>>(),
@@ -60,43 +56,26 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         (1.0 / 3.0, "k\u{209b} = K/3"),
         (1.0, "k\u{209b} = K"),
     ] {
-        let mut found = Vec::new();
-        for prestress in PRESTRESSES {
-            found.push(front_speed_in_a_chain(
-                kappa,
-                prestress,
-                FrictionLaw::Projection.into(),
-                DT_STAR,
-            )?);
-        }
+        let speed =
+            |prestress| front_speed_in_a_chain(kappa, prestress, FrictionLaw::Projection.into(), DT_STAR);
+        let found: Vec<f64> = PRESTRESSES.into_iter().map(speed).collect::<Result<_, _>>()?;
         if kappa == 0.0 {
             for (prestress, found) in PRESTRESSES.into_iter().zip(&found) {
                 let exact = front_speed(1.0, prestress);
-                answers.push(Answer::new(
+                chapter.add(
                     format!("front speed v/c, prestress {prestress}"),
                     [exact, *found],
-                    (
-                        0.5 * K_STRAIGHT.sqrt() * DT_STAR * exact * exact,
-                        "blocks start at whole steps, up to half a step from the interval l/v",
-                    ),
-                ));
+                    0.5 * K_STRAIGHT.sqrt() * DT_STAR * exact * exact,
+                    "blocks start at whole steps, up to half a step from the interval l/v",
+                );
             }
         }
         curves.push(Response::of_values(label, &PRESTRESSES, &found));
     }
-    Ok(Chapter {
-        title: "Slip fronts",
-        name: "fronts",
-        text: include_str!("text/fronts.md"),
-        answers,
-        picture: Some((
-            "Speed of slip fronts along a chain relative to the speed of sound. Drive springs slow fronts most at low prestress.",
-            Responses {
-                x_title: "prestress \u{3c4}".to_owned(),
-                y_title: "front speed v/c".to_owned(),
-                curves,
-                ..Responses::default()
-            },
-        )),
-    })
+    chapter.draw(
+        "Speed of slip fronts along a chain relative to the speed of sound. Drive springs slow fronts most at low prestress.",
+        ["prestress \u{3c4}", "front speed v/c"],
+        curves,
+    );
+    Ok(())
 }

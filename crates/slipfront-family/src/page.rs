@@ -9,93 +9,85 @@ use slipfront_base::disk::{begins_with, write_with_folders};
 use slipfront_plot::{Picture, PictureSize, response};
 use slipfront_run::folder_error::FolderError;
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::{Answer, Chapter, Topic};
 use crate::error::FamilyError;
 
-const IMAGES: &str = "images";
-
-/// A page of the documentation, with its chapters.
-pub struct Book {
+/// A page of the documentation.
+pub(crate) struct Page {
     /// The first line of the page, which identifies a page of an earlier call.
-    title: &'static str,
+    pub(crate) title: &'static str,
     /// Name of the page and its file without the ending; the names of its pictures begin with it.
-    name: &'static str,
+    pub(crate) name: &'static str,
     /// The first paragraphs of the page, below its title.
-    about: &'static str,
+    pub(crate) about: &'static str,
     /// Heading of the column with the reference values.
-    compared: &'static str,
+    pub(crate) compared: &'static str,
+    /// Topics of the page's chapters, in their order.
+    pub(crate) topics: &'static [Topic],
+}
+
+impl Page {
+    /// Name of the file of the page.
+    pub(crate) fn file(&self) -> String {
+        format!("{}.md", self.name)
+    }
+
+    /// The file of a foreign page that this page would replace in a folder.
+    pub(crate) fn foreign_in(&self, folder: &Path) -> Option<PathBuf> {
+        let path = folder.join(self.file());
+        let is_foreign = path.symlink_metadata().is_ok() && !begins_with(&path, self.title.as_bytes());
+        is_foreign.then_some(path)
+    }
+}
+
+/// A page of the documentation, with its computed chapters.
+pub struct Book {
+    page: &'static Page,
     /// The chapters of the page.
     pub chapters: Vec<Chapter>,
 }
 
-/// The books, each without its chapters.
-const BOOKS: [Book; 3] = [
-    Book {
-        title: "# The family, answer by answer\n",
-        name: "family",
-        about: include_str!("text/family.md"),
-        compared: "exact",
-        chapters: Vec::new(),
-    },
-    Book {
-        title: "# Benchmarks of frictional rupture\n",
-        name: "rupture",
-        about: include_str!("text/rupture.md"),
-        compared: "reference",
-        chapters: Vec::new(),
-    },
-    Book {
-        title: "# Fronts faster than shear waves\n",
-        name: "transition",
-        about: include_str!("text/transition.md"),
-        compared: "reference",
-        chapters: Vec::new(),
-    },
-];
-
 impl Book {
-    pub(crate) fn of_options(chapters: Vec<Chapter>) -> Self {
-        let [book, ..] = BOOKS;
-        Self { chapters, ..book }
-    }
-
-    pub(crate) fn of_benchmarks(chapters: Vec<Chapter>) -> Self {
-        let [_, book, _] = BOOKS;
-        Self { chapters, ..book }
-    }
-
-    pub(crate) fn of_transition(chapters: Vec<Chapter>) -> Self {
-        let [.., book] = BOOKS;
-        Self { chapters, ..book }
+    /// Computes the chapters of a page.
+    pub(crate) fn compute(page: &'static Page) -> Result<Self, FamilyError> {
+        let chapters = page.topics.par_iter().map(Chapter::about);
+        Ok(Self {
+            page,
+            chapters: chapters.collect::<Result<_, _>>()?,
+        })
     }
 
     /// Name of the file of the page.
     pub fn file(&self) -> String {
-        format!("{}.md", self.name)
+        self.page.file()
     }
 
     /// The text of the page.
     pub fn text(&self) -> String {
-        let Self {
+        let Page {
             title, name, about, ..
-        } = self;
+        } = self.page;
         let answers: usize = self.chapters.iter().map(|chapter| chapter.answers.len()).sum();
         let mut text = format!("{title}\n{}", about.replace("{answers}", &answers.to_string()));
         for chapter in &self.chapters {
-            let _ = write!(text, "\n## {}\n\n{}\n", chapter.title, chapter.text);
+            let _ = write!(text, "\n## {}\n\n{}\n", chapter.topic.title, chapter.topic.text);
             let _ = writeln!(
                 text,
                 "| quantity | {} | computed | error | tolerance | source of error |\n|---|---:|---:|---:|---:|---|",
-                self.compared
+                self.page.compared
             );
             for answer in &chapter.answers {
                 let _ = writeln!(text, "{}", row(answer));
             }
             if let Some((caption, _)) = &chapter.picture {
+                let Topic {
+                    title,
+                    name: of_chapter,
+                    ..
+                } = chapter.topic;
                 let _ = write!(
                     text,
-                    "\n{caption}\n\n![{}](images/{name}-{}.png)\n",
-                    chapter.title, chapter.name
+                    "\n{caption}\n\n![{title}](images/{name}-{of_chapter}.png)\n"
                 );
             }
         }
@@ -104,14 +96,8 @@ impl Book {
 }
 
 fn row(answer: &Answer) -> String {
-    let Answer {
-        quantity,
-        exact,
-        found,
-        tolerance,
-    } = answer;
-    let quantity = quantity.replace('|', "\\|");
-    let error = (found - exact).abs();
+    let quantity = answer.quantity.replace('|', "\\|");
+    let error = (answer.found - answer.exact).abs();
     let verdict = if answer.holds() {
         ""
     } else {
@@ -119,10 +105,10 @@ fn row(answer: &Answer) -> String {
     };
     format!(
         "| {quantity} | {} | {} | {error:.1e}{verdict} | {:.1e} | {} |",
-        digits(*exact),
-        digits(*found),
-        tolerance.distance,
-        tolerance.reason
+        digits(answer.exact),
+        digits(answer.found),
+        answer.tolerance,
+        answer.reason
     )
 }
 
@@ -144,35 +130,25 @@ pub fn summary(books: &[Book]) -> String {
         let _ = writeln!(
             text,
             "{}: {within} of {} within tolerance",
-            chapter.title,
+            chapter.topic.title,
             chapter.answers.len()
         );
         for answer in chapter.answers.iter().filter(|answer| !answer.holds()) {
+            let most = answer.most();
             let Answer {
                 quantity,
                 exact,
                 found,
-                tolerance,
+                reason,
+                ..
             } = answer;
             let _ = writeln!(
                 text,
-                "  {quantity}: computed {found}, expected {exact}, tolerance {} ({})",
-                answer.most(),
-                tolerance.reason
+                "  {quantity}: computed {found}, expected {exact}, tolerance {most} ({reason})"
             );
         }
     }
     text
-}
-
-/// The first foreign page that [`write_docs`] would replace in a folder.
-pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
-    let foreign = |book: &Book| {
-        let page = folder.join(book.file());
-        let is_foreign = page.symlink_metadata().is_ok() && !begins_with(&page, book.title.as_bytes());
-        is_foreign.then_some(page)
-    };
-    BOOKS.iter().find_map(foreign)
 }
 
 /// Writes the pages and their pictures, as in `docs/validation`.
@@ -185,22 +161,23 @@ pub fn write_docs(books: &[Book], folder: &Path) -> Result<(), FamilyError> {
     for book in books {
         let draw = |chapter: &Chapter| {
             let (_, responses) = chapter.picture.as_ref()?;
-            let name = chapter.name.to_owned();
+            let name = chapter.topic.name;
             let drawn = response(responses, PictureSize::default());
-            let picture = drawn.map_err(|source| FamilyError::Picture { name, source });
-            Some(picture.map(|picture| (chapter.name, picture)))
+            Some(
+                drawn
+                    .map(|picture| (name, picture))
+                    .map_err(|source| FamilyError::Picture {
+                        name: name.to_owned(),
+                        source,
+                    }),
+            )
         };
-        let pictures: Vec<(&str, Picture)> = book
-            .chapters
-            .par_iter()
-            .filter_map(draw)
-            .collect::<Result<_, _>>()?;
+        let pictures = book.chapters.par_iter().filter_map(draw);
+        let pictures: Vec<(&str, Picture)> = pictures.collect::<Result<_, _>>()?;
         write_file(folder.join(book.file()), book.text().as_bytes())?;
         for (name, picture) in pictures {
-            write_file(
-                folder.join(format!("{IMAGES}/{}-{name}.png", book.name)),
-                &picture.png,
-            )?;
+            let path = format!("images/{}-{name}.png", book.page.name);
+            write_file(folder.join(path), &picture.png)?;
         }
     }
     Ok(())

@@ -1,10 +1,9 @@
 //! Benchmarks of repeated slip: the stick-slip cycle of one block with rate-and-state friction and inertia,
 //! and the catalogue of events of a train of blocks.
 
-use slipfront::observe::Event;
-use slipfront_plot::{Response, Responses};
+use slipfront_plot::Response;
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::Chapter;
 use crate::error::FamilyError;
 use crate::runs::Experiment;
 
@@ -53,39 +52,19 @@ fn cycle(dt_star: f64) -> Result<Cycle, FamilyError> {
 /// with a relative error of 1e-9.
 const RADAU: Cycle = [2481.2248, 0.368_505, 0.670_089_9, 0.427_003_4];
 
-pub(crate) fn cycle_chapter() -> Result<Chapter, FamilyError> {
+pub(crate) fn compare_cycle(chapter: &mut Chapter) -> Result<(), FamilyError> {
     let (coarse, fine) = rayon::join(|| cycle(0.1), || cycle(0.05));
     let (coarse, fine) = (coarse?, fine?);
     let names = ["period", "largest speed", "largest force", "smallest force"];
-    let answers = names.iter().enumerate().map(|(k, name)| {
-        let extrapolated = 2.0 * fine[k] - coarse[k];
-        Answer::new(
+    for (k, name) in names.into_iter().enumerate() {
+        chapter.add(
             format!("{name}, extrapolated from Δt* = 0.1 and 0.05"),
-            [RADAU[k], extrapolated],
-            (
-                5e-4 * RADAU[k],
-                "the scheme is first-order accurate, so the extrapolation has a second-order error",
-            ),
-        )
-    });
-    Ok(Chapter {
-        title: "Stick-slip of rate and state with inertia",
-        name: "cycle",
-        text: include_str!("text/rupture_cycle.md"),
-        answers: answers.collect(),
-        picture: None,
-    })
-}
-
-/// The events of the train of `cases/burridge_knopoff.toml` up to t* of its drive.
-fn catalogue(duration_star: f64) -> Result<Vec<Event>, FamilyError> {
-    let text = include_str!("../cases/burridge_knopoff.toml");
-    let text = text.replace(
-        "duration_star = 10000",
-        &format!("duration_star = {duration_star}"),
-    );
-    let (experiment, last_step) = Experiment::of_case("catalogue", &text)?;
-    experiment.events("catalogue", last_step)
+            [RADAU[k], 2.0 * fine[k] - coarse[k]],
+            5e-4 * RADAU[k],
+            "the scheme is first-order accurate, so the extrapolation has a second-order error",
+        );
+    }
+    Ok(())
 }
 
 /// Range of the logarithm of the moment over F/k_p with the bins for the exponent.
@@ -112,40 +91,34 @@ fn exponent(moments: &[f64]) -> (f64, [Vec<f64>; 2]) {
     (-covariance / variance, [x, counts.to_vec()])
 }
 
-pub(crate) fn catalogue_chapter() -> Result<Chapter, FamilyError> {
-    let events = catalogue(20_000.0)?;
+pub(crate) fn compare_catalogue(chapter: &mut Chapter) -> Result<(), FamilyError> {
+    let text = include_str!("../cases/burridge_knopoff.toml");
+    let text = text.replace("duration_star = 10000", "duration_star = 20000");
+    let (experiment, last_step) = Experiment::of_case("catalogue", &text)?;
+    let events = experiment.events("catalogue", last_step)?;
     // The first fifth of the events is left out, because the train starts from rest. F/k_p is F/(k_s*).
     let later = &events[events.len() / 5..];
-    let moments: Vec<f64> = later
+    let ended = later
         .iter()
-        .filter(|event| event.after.is_some() && event.moment > 0.0)
-        .map(|event| event.moment * 0.0075)
-        .collect();
+        .filter(|event| event.after.is_some() && event.moment > 0.0);
+    let moments: Vec<f64> = ended.map(|event| event.moment * 0.0075).collect();
     let (found, [x, counts]) = exponent(&moments);
-    let answers = vec![Answer::new(
+    chapter.add(
         format!("exponent of {} events, -7 < ln M < -2", moments.len()),
         [1.0, found],
-        (0.15, "scatter between windows of a catalogue of 26 668 events"),
-    )];
+        0.15,
+        "scatter between windows of a catalogue of 26 668 events",
+    );
     let moment: Vec<f64> = x.iter().map(|&x| libm::exp(x)).collect();
-    Ok(Chapter {
-        title: "Event catalogue of a train of blocks",
-        name: "catalogue",
-        text: include_str!("text/rupture_catalogue.md"),
-        answers,
-        picture: Some((
-            "Number of events in bins of ln M of width 0.5, and a line proportional to 1/M.",
-            Responses {
-                x_title: "moment M".to_owned(),
-                y_title: "events".to_owned(),
-                log_x: true,
-                log_y: true,
-                curves: vec![
-                    Response::of_values("events", &moment, &counts),
-                    Response::of_formula("1/M", &moment, |m| counts[BINS / 2] * moment[BINS / 2] / m),
-                ],
-                ..Responses::default()
-            },
-        )),
-    })
+    let line = |m: f64| counts[BINS / 2] * moment[BINS / 2] / m;
+    let picture = chapter.draw(
+        "Number of events in bins of ln M of width 0.5, and a line proportional to 1/M.",
+        ["moment M", "events"],
+        vec![
+            Response::of_values("events", &moment, &counts),
+            Response::of_formula("1/M", &moment, line),
+        ],
+    );
+    (picture.log_x, picture.log_y) = (true, true);
+    Ok(())
 }

@@ -7,7 +7,10 @@ use slipfront::communicator::Alone;
 use slipfront::exact_solutions::oscillation_growth;
 use slipfront::lattice::K_DRIVE;
 use slipfront::observe::{Curve, CurveRow, Event, Events, Scheduled};
-use slipfront::{Execution, Model, Simulation, Snapshot, State, Stop, VectorField, scales};
+use slipfront::{
+    Drive, Execution, Friction, Lattice, Model, Simulation, Snapshot, State, Stop, Surface, VectorField,
+    scales,
+};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::CaseFile;
 
@@ -19,7 +22,6 @@ pub(crate) struct AnswerRun {
     pub(crate) simulation: Simulation,
     /// Rows of every step.
     pub(crate) rows: Vec<CurveRow>,
-    pub(crate) model: Arc<Model>,
 }
 
 /// A slider that a case file cannot describe.
@@ -31,9 +33,10 @@ pub(crate) struct Experiment {
 }
 
 impl AnswerRun {
-    /// Runs a case from the text of a case file.
-    pub(crate) fn of_case(name: &str, text: &str) -> Result<Self, FamilyError> {
-        let (experiment, last_step) = Experiment::of_case(name, text)?;
+    /// Runs a case with equal blocks from the text of a case file, in which coefficients do not scatter.
+    pub(crate) fn of_equal_blocks(name: &str, text: &str) -> Result<Self, FamilyError> {
+        let equal = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n";
+        let (experiment, last_step) = Experiment::of_case(name, &format!("{equal}{text}"))?;
         experiment.run(name, last_step)
     }
 
@@ -43,11 +46,6 @@ impl AnswerRun {
             .peak()
             .first_slip_drive_time_star
             .unwrap_or(f64::NAN)
-    }
-
-    /// The row of the first instant at which a block slides.
-    pub(crate) fn first_sliding(&self) -> Option<&CurveRow> {
-        self.rows.iter().find(|row| row.point.n_sliding > 0)
     }
 
     /// mu* at the row nearest to a time.
@@ -68,6 +66,15 @@ impl AnswerRun {
 }
 
 impl Experiment {
+    /// A slider at rest.
+    pub(crate) fn at_rest(model: Model, dt_star: f64) -> Self {
+        Self {
+            model: Arc::new(model),
+            dt_star,
+            state: None,
+        }
+    }
+
     /// The experiment that a case describes, and its last step.
     pub(crate) fn of_case(name: &str, text: &str) -> Result<(Self, u64), FamilyError> {
         Self::of_case_with(name, text, &FilesInMemory::new())
@@ -84,7 +91,7 @@ impl Experiment {
             in_memory: Some(files),
         };
         let file = CaseFile::parse(text, name, &[])?;
-        let case = Case::to_run_with(file, name, files, &mut |_| true, Ranks::ALONE)?;
+        let case = Case::to_run(file, name, files, &mut |_| true, Ranks::ALONE)?;
         let experiment = Self {
             model: Arc::clone(&case.model),
             dt_star: case.time_plan.dt_star,
@@ -96,40 +103,30 @@ impl Experiment {
     /// Runs the experiment to this step and lists its events of slip.
     pub(crate) fn events(&self, name: &str, last_step: u64) -> Result<Vec<Event>, FamilyError> {
         let mut events = Events::new(&self.model);
-        let mut simulation = self.begin();
-        let done = simulation.run(Stop::at_step(last_step), &mut [Scheduled::always(&mut events)]);
-        done.map_err(|source| FamilyError::Run {
-            name: name.to_owned(),
-            source,
-        })?;
+        self.observed(name, last_step, Scheduled::always(&mut events))?;
         Ok(events.events().to_vec())
     }
 
     /// Runs the experiment to this step.
-    pub(crate) fn run(self, name: &str, last_step: u64) -> Result<AnswerRun, FamilyError> {
-        let mut simulation = self.begin();
+    pub(crate) fn run(&self, name: &str, last_step: u64) -> Result<AnswerRun, FamilyError> {
         let mut curve = Curve::every(1);
-        let done = simulation.run(Stop::at_step(last_step), &mut [Scheduled::always(&mut curve)]);
-        done.map_err(|source| FamilyError::Run {
-            name: name.to_owned(),
-            source,
-        })?;
         Ok(AnswerRun {
-            simulation,
+            simulation: self.observed(name, last_step, Scheduled::always(&mut curve))?,
             rows: curve.rows,
-            model: self.model,
         })
+    }
+
+    fn observed(&self, name: &str, last_step: u64, observer: Scheduled) -> Result<Simulation, FamilyError> {
+        let mut simulation = self.begin();
+        let ended = simulation.run(Stop::at_step(last_step), &mut [observer]);
+        ended.map_err(FamilyError::of_run(name))?;
+        Ok(simulation)
     }
 
     /// The simulation at the first instant.
     pub(crate) fn begin(&self) -> Simulation {
-        let execution = Execution::default();
-        Simulation::new(
-            Arc::clone(&self.model),
-            self.dt_star,
-            self.state.clone(),
-            execution,
-        )
+        let (model, state) = (Arc::clone(&self.model), self.state.clone());
+        Simulation::new(model, self.dt_star, state, Execution::default())
     }
 
     /// Results of `value` at these times, in ascending order.
@@ -149,6 +146,9 @@ impl Experiment {
     }
 }
 
+/// Reason for a first slip up to a step late.
+pub(crate) const LATE_SLIP: &str = "slip is detected at the next step";
+
 /// Reason for the distance that [`rounding`] allows for the level of steady sliding with Omega* = 1, in steps
 /// of 0.1.
 pub(crate) const ROUNDING: &str = "rounding of displacements by ε X/2 per step within the decay time 2/Ω; the initial oscillation has decayed";
@@ -161,24 +161,36 @@ pub(crate) fn rounding(path: f64) -> f64 {
 
 /// Growth rate of a small perturbation of steady sliding, for blocks that move together, from `t* = first`
 /// on, as for [`oscillation_growth`].
-pub(crate) fn growth_of_perturbation(model: Model, dt_star: f64, first: f64, apart: f64) -> f64 {
-    let (v_star, n) = (model.drive.v_star, model.lattice.n_blocks());
+pub(crate) fn growth_of_perturbation(
+    drive: Drive,
+    damping: f64,
+    friction: Friction,
+    dt_star: f64,
+    [first, apart]: [f64; 2],
+) -> f64 {
+    let lattice = Lattice::free(2, 2);
+    let surface = Surface::uniform(&lattice, 1.0, 0.5);
+    let v_star = drive.v_star;
+    let model = Model::new(lattice, surface, drive, damping, 0.0, friction);
     let behind = model.steady_level(&Alone) / model.drive.k_drive;
-    let along_x = |x: f64| VectorField {
-        x: vec![x; n],
-        y: vec![0.0; n],
-    };
     let experiment = Experiment {
-        model: Arc::new(model),
-        dt_star,
         state: Some(State {
-            displacement: along_x(1e-6 - behind),
-            velocity: along_x(v_star),
+            displacement: along_x(1e-6 - behind, 4),
+            velocity: along_x(v_star, 4),
         }),
+        ..Experiment::at_rest(model, dt_star)
     };
     let times = [0.0, 1.0, 2.0, 3.0].map(|k| first + k * apart);
     let values = experiment.values(times, |now| {
         now.block(0).displacement[0] + behind - v_star * now.time_star
     });
     oscillation_growth(values, apart)
+}
+
+/// Equal vectors along x of some blocks.
+pub(crate) fn along_x(x: f64, blocks: usize) -> VectorField {
+    VectorField {
+        x: vec![x; blocks],
+        y: vec![0.0; blocks],
+    }
 }

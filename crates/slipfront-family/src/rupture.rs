@@ -1,15 +1,14 @@
 //! Speed of a rupture along the edge of an upright sheet, and along a line across a sheet.
 
 use std::f64::consts::{PI, SQRT_2};
-use std::sync::Arc;
 
 use rayon::prelude::*;
 use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Contact, Load};
-use slipfront::{Coulomb, DeadLoad, Drive, Interface, Lattice, Model, Slider, Surface};
-use slipfront_plot::{Response, Responses};
+use slipfront::{Coulomb, DeadLoad, Drive, Friction, Interface, Lattice, Model, Slider, Surface};
+use slipfront_plot::Response;
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::Chapter;
 use crate::error::FamilyError;
 use crate::falling_strength;
 use crate::runs::Experiment;
@@ -65,7 +64,8 @@ impl Rupture {
         1.3 * self.critical_length()
     }
 
-    fn model(&self) -> Result<Model, FamilyError> {
+    /// The sheet at rest under its prestress.
+    pub(crate) fn experiment(&self) -> Result<Experiment, FamilyError> {
         let [nx, ny] = self.blocks;
         let lattice = Lattice::free(nx, ny);
         let n = lattice.n_blocks();
@@ -88,10 +88,10 @@ impl Rupture {
             ..Contact::new(Load::Kept, 1.0)
         };
         let surface = Surface::of_ranks(coefficients, textured, contact, &slider, &Alone)?;
-        let law = Coulomb {
+        let law = Friction::Coulomb(Coulomb {
             interface,
             ..falling_strength((1.0 - KINETIC) / self.weakening)
-        };
+        });
         // The prestress drives the rupture; the force of the springs is negligible.
         let drive = Drive {
             k_drive: 1e-9,
@@ -99,23 +99,8 @@ impl Rupture {
         };
         let on_contacts = (0..n).map(|b| f64::from(u8::from(is_in_contact(b)))).collect();
         let load = DeadLoad::of_blocks([shear, 0.0], on_contacts, &slider, &Alone);
-        let model = Model::new(
-            lattice,
-            surface,
-            drive,
-            0.0,
-            0.0,
-            slipfront::Friction::Coulomb(law),
-        );
-        Ok(model.with_dead_load(load))
-    }
-
-    pub(crate) fn experiment(&self) -> Result<Experiment, FamilyError> {
-        Ok(Experiment {
-            model: Arc::new(self.model()?),
-            dt_star: STEP,
-            state: None,
-        })
+        let model = Model::new(lattice, surface, drive, 0.0, 0.0, law).with_dead_load(load);
+        Ok(Experiment::at_rest(model, STEP))
     }
 
     /// Distances from the middle in blocks, and the speed of the front over that of shear waves, averaged
@@ -151,97 +136,79 @@ const NUMPY_LINE: [(f64, &[f64]); 2] = [
 /// Values of S of the picture.
 const EXCESSES: [f64; 6] = [0.5, 0.9, 1.2, 1.4, 1.77, 2.0];
 
-pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+pub(crate) fn compare(chapter: &mut Chapter) -> Result<(), FamilyError> {
     let at = |place: Place, strength_excess: f64| Rupture {
         place,
         blocks: [600, 160],
         weakening: 0.2,
         strength_excess,
     };
-    let rupture = |excess: f64| at(Place::Edge, excess);
-    let lines = NUMPY_LINE.iter().map(|(excess, _)| (Place::Line, *excess));
-    let all: Vec<(Place, f64)> = EXCESSES
-        .map(|excess| (Place::Edge, excess))
-        .into_iter()
-        .chain(lines)
-        .collect();
+    let critical_length = |excess: f64| at(Place::Edge, excess).critical_length();
     // Until waves return from the upper edge.
-    let mut found: Vec<Vec<[f64; 2]>> = all
-        .par_iter()
-        .map(|&(place, excess)| at(place, excess).speeds(300.0))
-        .collect::<Result<_, _>>()?;
-    let along_lines = found.split_off(EXCESSES.len());
+    let speeds_of = |place: Place, excesses: Vec<f64>| {
+        let runs = excesses
+            .into_par_iter()
+            .map(|excess| at(place, excess).speeds(300.0));
+        runs.collect::<Result<Vec<_>, _>>()
+    };
+    let (along_edges, along_lines) = rayon::join(
+        || speeds_of(Place::Edge, EXCESSES.to_vec()),
+        || speeds_of(Place::Line, NUMPY_LINE.map(|(excess, _)| excess).to_vec()),
+    );
+    let (along_edges, along_lines) = (along_edges?, along_lines?);
     let of = |excess: f64| {
         let at = EXCESSES.iter().position(|&other| other == excess);
-        at.map_or(&[][..], |at| &found[at])
+        at.map_or(&[][..], |at| &along_edges[at])
     };
-    let mut answers = Vec::new();
-    let of_numpy = NUMPY
-        .iter()
-        .map(|(excess, speeds)| ("", excess, speeds, of(*excess)));
-    let of_lines = NUMPY_LINE.iter().zip(&along_lines);
-    let of_lines = of_lines.map(|((excess, speeds), found)| ("line, ", excess, speeds, &found[..]));
-    for (place, excess, speeds, found) in of_numpy.chain(of_lines) {
+    let edges = NUMPY.map(|(excess, speeds)| ("", excess, speeds, of(excess)));
+    let lines = NUMPY_LINE.into_iter().zip(&along_lines);
+    let lines = lines.map(|((excess, speeds), found)| ("line, ", excess, speeds, &found[..]));
+    for (place, excess, speeds, found) in edges.into_iter().chain(lines) {
         for (&reference, &[distance, speed]) in speeds.iter().zip(found) {
-            answers.push(Answer::new(
+            chapter.add(
                 format!("{place}S = {excess}: v/c_S at {distance} blocks, reference: NumPy"),
                 [reference, speed],
-                (
-                    2.0 * STEP / 24.0 * C_S_SQUARE.sqrt() * reference * reference,
-                    "slip times at both ends of the 25 blocks are whole steps",
-                ),
-            ));
+                2.0 * STEP / 24.0 * C_S_SQUARE.sqrt() * reference * reference,
+                "slip times at both ends of the 25 blocks are whole steps",
+            );
         }
     }
     for excess in [1.4, 2.0] {
-        let beyond = of(excess)
-            .iter()
-            .filter(|[distance, _]| *distance >= rupture(excess).critical_length());
+        let speeds = of(excess).iter();
+        let beyond = speeds.filter(|[distance, _]| *distance >= critical_length(excess));
         let fastest = beyond.map(|[_, speed]| *speed).fold(0.0, f64::max);
-        let bound = Answer::new(
+        let bound = chapter.add(
             format!("S = {excess}: largest v/c_S, at most c_R/c_S"),
             [C_R, fastest],
-            (
-                0.01 * C_R,
-                "1 % for dispersion with six blocks in the cohesive zone; any lower speed passes",
-            ),
+            0.01 * C_R,
+            "1 % for dispersion with six blocks in the cohesive zone; any lower speed passes",
         );
-        answers.push(bound.at_most_below(f64::INFINITY));
+        bound.tolerance_below = f64::INFINITY;
     }
-    let late = of(0.9)
+    let mut late = of(0.9)
         .iter()
-        .find(|[distance, _]| *distance >= 8.0 * rupture(0.9).critical_length());
-    answers.push(
-        Answer::new(
-            "S = 0.9: v/c_S at 8 L_c, at least √2",
-            [SQRT_2, late.map_or(f64::NAN, |[_, speed]| *speed)],
-            (f64::INFINITY, "any speed above √2 c_S passes"),
-        )
-        .at_most_below(0.0),
+        .filter(|[distance, _]| *distance >= 8.0 * critical_length(0.9));
+    let bound = chapter.add(
+        "S = 0.9: v/c_S at 8 L_c, at least √2",
+        [SQRT_2, late.next().map_or(f64::NAN, |[_, speed]| *speed)],
+        f64::INFINITY,
+        "any speed above √2 c_S passes",
     );
-    let curves = EXCESSES.iter().zip(&found).map(|(excess, speeds)| {
-        let length = rupture(*excess).critical_length();
-        let [x, y] = [0, 1].map(|k| speeds.iter().map(|pair| pair[k]).collect::<Vec<f64>>());
-        let x: Vec<f64> = x.iter().map(|distance| distance / length).collect();
+    bound.tolerance_below = 0.0;
+    let curves = EXCESSES.iter().zip(&along_edges).map(|(&excess, speeds)| {
+        let length = critical_length(excess);
+        let distances: Vec<f64> = speeds.iter().map(|[distance, _]| distance / length).collect();
+        let speeds: Vec<f64> = speeds.iter().map(|[_, speed]| *speed).collect();
         Response {
             line: true,
-            ..Response::of_values(&format!("S = {excess}"), &x, &y)
+            ..Response::of_values(&format!("S = {excess}"), &distances, &speeds)
         }
     });
-    Ok(Chapter {
-        title: "Speed of a rupture along an edge",
-        name: "speed",
-        text: include_str!("text/rupture_speed.md"),
-        answers,
-        picture: Some((
-            "Front speed relative to shear waves against distance over L_c. No front runs steadily between c_R = 0.919 and 1: a front stays below \
-             this range or jumps across it.",
-            Responses {
-                x_title: "distance/L_c".to_owned(),
-                y_title: "front speed v/c_S".to_owned(),
-                curves: curves.collect(),
-                ..Responses::default()
-            },
-        )),
-    })
+    chapter.draw(
+        "Front speed relative to shear waves against distance over L_c. No front runs steadily between c_R = 0.919 and 1: a front stays below \
+         this range or jumps across it.",
+        ["distance/L_c", "front speed v/c_S"],
+        curves.collect(),
+    );
+    Ok(())
 }

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use slipfront::exact_solutions::slip_of_jump;
 use slipfront::lattice::K_DRIVE;
 use slipfront::{
-    Coulomb, Drive, Execution, Friction, FrictionLaw, Lattice, Model, Program, Simulation, SlipWeakening,
-    Surface,
+    Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, Program, Simulation, SlipWeakening, Surface,
 };
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::Chapter;
 use crate::error::FamilyError;
+use crate::runs::Experiment;
 
 /// Difference `S - K` of thresholds 1 and 0.5.
 const DROP: f64 = 0.5;
@@ -32,14 +32,14 @@ pub(crate) fn falling_strength(length: f64) -> Coulomb {
 /// One block that weakens by `weakening` per slip.
 fn block(weakening: f64, damping: f64, segments: &[(f64, f64)]) -> Simulation {
     let lattice = Lattice::free(1, 1);
-    let friction = Friction::Coulomb(falling_strength(DROP / weakening));
     let surface = Surface::uniform(&lattice, 1.0, 1.0 - DROP);
     let drive = Drive {
         program: Some(Arc::new(Program::new(segments.iter().copied()))),
         ..Drive::along_x(FAST)
     };
-    let model = Model::new(lattice, surface, drive, damping, 0.0, friction);
-    Simulation::new(model, DT_STAR, None, Execution::default())
+    let law = Friction::Coulomb(falling_strength(DROP / weakening));
+    let model = Model::new(lattice, surface, drive, damping, 0.0, law);
+    Experiment::at_rest(model, DT_STAR).begin()
 }
 
 /// Position where a block comes to rest after it has jumped without damping, while the drive is stopped at
@@ -68,43 +68,33 @@ fn followed(weakening: f64, damping: f64, speed: f64, path: f64) -> f64 {
     simulation.snapshot().block(0).displacement[0]
 }
 
-pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
-    let mut answers = Vec::new();
+pub(crate) fn compare(chapter: &mut Chapter) -> Result<(), FamilyError> {
     for weakening in [0.6, 1.0, 2.0] {
         let exact = slip_of_jump(DROP, weakening, K_DRIVE);
         let [found, energy] = jumped(weakening);
-        answers.push(Answer::new(
+        chapter.add(
             format!("slip of a jump, W = {weakening}"),
             [exact, found],
-            (
-                6.0 * FAST * DT_STAR,
-                "the drive stops up to two steps beyond the threshold; the jump amplifies this up to three times",
-            ),
-        ));
-        answers.push(Answer::new(
+            6.0 * FAST * DT_STAR,
+            "the drive stops up to two steps beyond the threshold; the jump amplifies this up to three times",
+        );
+        chapter.add(
             format!("weakening energy of the jump, W = {weakening}"),
             [0.5 * DROP * DROP / weakening, energy],
-            (1e-15, "rounding"),
-        ));
+            1e-15,
+            "rounding",
+        );
     }
     let (weakening, damping, speed) = (0.25, 0.5, 1e-5);
     let softness = 1.0 / (K_DRIVE - weakening);
     for slip in [0.5, 1.0, 1.5] {
         let path = (1.0 + (K_DRIVE - weakening) * slip) / K_DRIVE;
-        answers.push(Answer::new(
+        chapter.add(
             format!("stable slip at X = {path:.4}, W = {weakening}"),
             [slip, followed(weakening, damping, speed, path)],
-            (
-                1.2 * damping * speed * K_DRIVE * softness * softness,
-                "lag due to damping, Ω V k_s/(k_s - W)², plus a fifth for the time step",
-            ),
-        ));
+            1.2 * damping * speed * K_DRIVE * softness * softness,
+            "lag due to damping, Ω V k_s/(k_s - W)², plus a fifth for the time step",
+        );
     }
-    Ok(Chapter {
-        title: "Slip weakening",
-        name: "slip_weakening",
-        text: include_str!("text/slip_weakening.md"),
-        answers,
-        picture: None,
-    })
+    Ok(())
 }

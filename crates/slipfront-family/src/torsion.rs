@@ -1,16 +1,14 @@
 //! A drive that rotates.
 
-use std::sync::Arc;
-
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{
     torsion_first_slip, torsion_of_decoupled_blocks, torsion_of_decoupled_disc,
 };
 use slipfront::lattice::K_DRIVE;
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Outline, Rotation, Slider, Surface, scales};
-use slipfront_plot::{Response, Responses};
+use slipfront_plot::Response;
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::Chapter;
 use crate::error::FamilyError;
 use crate::runs::{AnswerRun, Experiment};
 
@@ -71,29 +69,22 @@ fn decoupled(r_star: f64) -> Experiment {
     let mut model = Model::new(lattice, surface, drive, damping, 0.0, FrictionLaw::Projection);
     let rotation = Rotation::about_centroid(&lattice, &model.rows, &slider, &Alone);
     model.drive.rotation = Some(rotation);
-    Experiment {
-        model: Arc::new(model.with_slider(slider)),
-        dt_star: DT_STAR,
-        state: None,
-    }
+    Experiment::at_rest(model.with_slider(slider), DT_STAR)
 }
 
-pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
-    let mut answers = Vec::new();
-    let text = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n\
-                [slider]\nblocks = [20, 20]\noutline = \"disc\"\n[drive]\nmotion = \"rotation\"\n\
+pub(crate) fn compare(chapter: &mut Chapter) -> Result<(), FamilyError> {
+    let text = "[slider]\nblocks = [20, 20]\noutline = \"disc\"\n[drive]\nmotion = \"rotation\"\n\
                 [time]\nstep = 0.02\nstop = \"after_onset\"";
-    let run = AnswerRun::of_case("torsion", text)?;
-    let exact = torsion_first_slip(&radii(&run.model));
-    let rise = exact * 0.375 * 0.03 * 0.02;
-    answers.push(Answer::seen_late(
+    let run = AnswerRun::of_equal_blocks("torsion", text)?;
+    let exact = torsion_first_slip(&radii(run.simulation.snapshot().model));
+    let mut sliding = run.rows.iter().filter(|row| row.point.n_sliding > 0);
+    let found = sliding.next().map_or(f64::NAN, |row| row.point.mu_star);
+    chapter.add_late(
         "T/T_full at the first slip of a disc with a diameter of 20 blocks",
-        [
-            exact,
-            run.first_sliding().map_or(f64::NAN, |row| row.point.mu_star),
-        ],
-        (rise, "increase of the torque in one step"),
-    ));
+        [exact, found],
+        exact * 0.375 * 0.03 * 0.02,
+        "increase of the torque in one step",
+    );
     let mut curves = Vec::new();
     let shares: Vec<f64> = (30..=100).map(|k| 0.01 * f64::from(k)).collect();
     for r_star in [0.3, 0.9] {
@@ -103,38 +94,28 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
         let times = STUCK.map(|stuck| first / stuck);
         let found = experiment.values(times, |now| now.point.mu_star);
         for (stuck, found) in STUCK.into_iter().zip(found) {
-            let answer = Answer::new(
+            let answer = chapter.add(
                 format!("T/T_full while blocks within ρ = {stuck} r_max stick, R* = {r_star}"),
                 [torsion_of_decoupled_blocks(&radii, stuck, r_star), found],
-                (
-                    excess(&radii, stuck, r_star),
-                    "drag of sliding blocks, decaying force of blocks that slipped recently, and half a step",
-                ),
+                excess(&radii, stuck, r_star),
+                "drag of sliding blocks, decaying force of blocks that slipped recently, and half a step",
             );
-            answers.push(answer.at_most_below(HALF_A_STEP));
+            answer.tolerance_below = HALF_A_STEP;
         }
+        let exact = |stuck| torsion_of_decoupled_disc(stuck, r_star);
         curves.push(Response::of_formula(
             &format!("R* = {r_star}, exact"),
             &shares,
-            |stuck| torsion_of_decoupled_disc(stuck, r_star),
+            exact,
         ));
         curves.push(Response::of_values(&format!("R* = {r_star}"), &STUCK, &found));
     }
-    Ok(Chapter {
-        title: "Torsion",
-        name: "torsion",
-        text: include_str!("text/torsion.md"),
-        answers,
-        picture: Some((
-            "Torque of a disc of uncoupled blocks against the radius of the stuck part. Lines: continuous disc; points: 40 blocks across.",
-            Responses {
-                x_title: "radius of the stuck part over disc radius".to_owned(),
-                y_title: "torque over full torque".to_owned(),
-                curves,
-                ..Responses::default()
-            },
-        )),
-    })
+    chapter.draw(
+        "Torque of a disc of uncoupled blocks against the radius of the stuck part. Lines: continuous disc; points: 40 blocks across.",
+        ["radius of the stuck part over disc radius", "torque over full torque"],
+        curves,
+    );
+    Ok(())
 }
 
 #[cfg(test)]

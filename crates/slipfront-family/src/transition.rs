@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 use slipfront::Simulation;
-use slipfront_plot::{Response, Responses};
+use slipfront_plot::Response;
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::Chapter;
 use crate::error::FamilyError;
 use crate::rupture::{C_S_SQUARE, Place, Rupture, STEP};
 
@@ -28,7 +28,7 @@ struct Front {
 }
 
 impl Front {
-    fn of(simulation: &Simulation, rupture: &Rupture) -> Self {
+    fn from_simulation(simulation: &Simulation, rupture: &Rupture) -> Self {
         let first = simulation.snapshot().first_slip_time_star();
         let (nx, from) = (rupture.blocks[0], rupture.half_patch() as usize + 5);
         let mut reached = first[nx / 2 + from..nx - 20].to_vec();
@@ -83,7 +83,7 @@ fn run(strength_excess: f64) -> Result<(Rupture, Front), FamilyError> {
         for _ in 0..400 {
             simulation.step();
         }
-        let front = Front::of(&simulation, &rupture);
+        let front = Front::from_simulation(&simulation, &rupture);
         let sustained = (SUSTAINED * rupture.critical_length()) as usize;
         let is_far = front.distance() as f64 >= way || simulation.time_star() > time;
         if is_far || front.transition(sustained).is_some() {
@@ -95,23 +95,23 @@ fn run(strength_excess: f64) -> Result<(Rupture, Front), FamilyError> {
 /// Values of S, all below the limit of 1.77.
 const EXCESSES: [f64; 3] = [0.5, 0.8, 1.2];
 
-pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+pub(crate) fn compare(chapter: &mut Chapter) -> Result<(), FamilyError> {
     let found: Vec<(Rupture, Front)> = EXCESSES
         .par_iter()
         .map(|&excess| run(excess))
         .collect::<Result<_, _>>()?;
-    let mut answers = Vec::new();
     let mut curves = Vec::new();
     for (rupture, front) in &found {
         let (excess, length) = (rupture.strength_excess, rupture.critical_length());
         let transition = front.transition((SUSTAINED * length) as usize);
         let distance = transition.map_or(f64::INFINITY, |at| at as f64 / length);
-        let answer = Answer::new(
+        let answer = chapter.add(
             format!("S = {excess}: distance over L_c at which the front speed exceeds c_S, at most 40"),
             [FARTHEST, distance],
-            (0.0, "any shorter distance passes"),
+            0.0,
+            "any shorter distance passes",
         );
-        answers.push(answer.at_most_below(f64::INFINITY));
+        answer.tolerance_below = f64::INFINITY;
         let every = front.speeds().step_by((0.25 * length) as usize);
         let (x, y): (Vec<f64>, Vec<f64>) = every
             .map(|(at, speed)| (at as f64 / length, speed.min(2.0)))
@@ -121,19 +121,10 @@ pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
             ..Response::of_values(&format!("S = {excess}"), &x, &y)
         });
     }
-    Ok(Chapter {
-        title: "The transition to fronts faster than shear waves",
-        name: "speed",
-        text: include_str!("text/transition_speed.md"),
-        answers,
-        picture: Some((
-            "Front speed relative to shear waves, averaged over 20 blocks, against distance over L_c. Curves end once it has exceeded c_S for 3 L_c.",
-            Responses {
-                x_title: "distance/L_c".to_owned(),
-                y_title: "front speed v/c_S".to_owned(),
-                curves,
-                ..Responses::default()
-            },
-        )),
-    })
+    chapter.draw(
+        "Front speed relative to shear waves, averaged over 20 blocks, against distance over L_c. Curves end once it has exceeded c_S for 3 L_c.",
+        ["distance/L_c", "front speed v/c_S"],
+        curves,
+    );
+    Ok(())
 }

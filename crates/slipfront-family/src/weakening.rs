@@ -2,10 +2,10 @@
 
 use slipfront::exact_solutions::weakening_growth;
 use slipfront::lattice::K_DRIVE;
-use slipfront::{Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, Surface, Weakening};
-use slipfront_plot::{Response, Responses};
+use slipfront::{Coulomb, Drive, Friction, FrictionLaw, Weakening};
+use slipfront_plot::Response;
 
-use crate::answer::{Answer, Chapter};
+use crate::chapter::Chapter;
 use crate::error::FamilyError;
 use crate::runs::growth_of_perturbation;
 
@@ -19,47 +19,33 @@ const DAMPINGS: [f64; 5] = [0.0, 0.2, 0.3, 0.4, 0.6];
 
 /// Growth rate of a small perturbation of steady sliding, for blocks that move together.
 fn computed(damping: f64) -> f64 {
-    let lattice = Lattice::free(2, 2);
     let friction = Friction::Coulomb(Coulomb {
         weakening: Some(LAW),
         ..FrictionLaw::Projection.into()
     });
-    let surface = Surface::uniform(&lattice, 1.0, 0.5);
-    let model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 0.0, friction);
-    growth_of_perturbation(model, DT_STAR, 0.0, 2.4)
+    growth_of_perturbation(Drive::along_x(V_STAR), damping, friction, DT_STAR, [0.0, 2.4])
 }
 
-pub(crate) fn chapter() -> Result<Chapter, FamilyError> {
+pub(crate) fn compare(chapter: &mut Chapter) -> Result<(), FamilyError> {
     let exact = |damping: f64| weakening_growth(&LAW, 0.5, V_STAR, K_DRIVE, damping);
     let found = DAMPINGS.map(computed);
-    let answers = DAMPINGS.into_iter().zip(found).map(|(damping, found)| {
-        Answer::new(
+    for (damping, found) in DAMPINGS.into_iter().zip(found) {
+        chapter.add(
             format!("growth rate at V* = 0.2, Ω = {damping}"),
             [exact(damping), found],
             // Without damping the rate is -(dF/dv)/2.
-            (
-                0.6 * 2.0 * exact(0.0) * DT_STAR * exact(damping).abs(),
-                "first-order error, relative ½ |dF/dv| Δt, plus a fifth for higher orders",
-            ),
-        )
-    });
+            0.6 * 2.0 * exact(0.0) * DT_STAR * exact(damping).abs(),
+            "first-order error, relative ½ |dF/dv| Δt, plus a fifth for higher orders",
+        );
+    }
     let fine: Vec<f64> = (0..=60).map(|k| 0.01 * f64::from(k)).collect();
-    Ok(Chapter {
-        title: "Velocity weakening",
-        name: "weakening",
-        text: include_str!("text/weakening.md"),
-        answers: answers.collect(),
-        picture: Some((
-            "Growth rate of a small perturbation of steady sliding against damping. A positive rate leads to stick-slip.",
-            Responses {
-                x_title: "damping \u{3a9}".to_owned(),
-                y_title: "growth rate".to_owned(),
-                curves: vec![
-                    Response::of_formula("exact", &fine, exact),
-                    Response::of_values("computed", &DAMPINGS, &found),
-                ],
-                ..Responses::default()
-            },
-        )),
-    })
+    chapter.draw(
+        "Growth rate of a small perturbation of steady sliding against damping. A positive rate leads to stick-slip.",
+        ["damping \u{3a9}", "growth rate"],
+        vec![
+            Response::of_formula("exact", &fine, exact),
+            Response::of_values("computed", &DAMPINGS, &found),
+        ],
+    );
+    Ok(())
 }

@@ -20,7 +20,7 @@ struct LargeLattices {
     u32 groups, done;
 };
 
-static_assert(sizeof(LargeLattices) == 104, "the size that src/large.rs has");
+static_assert(sizeof(LargeLattices) == 104, "the size that src/large_lattices.rs has");
 
 // What the threads of a group share.
 struct Tile {

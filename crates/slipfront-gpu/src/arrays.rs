@@ -47,7 +47,7 @@ unsafe impl DeviceRepr for Pointers {}
 
 impl Arrays {
     /// Copies the numbers of a batch to the GPU.
-    pub(crate) fn of(batch: &Batch, stream: &Arc<CudaStream>) -> Result<Self, DriverError> {
+    pub(crate) fn copy_to_gpu(batch: &Batch, stream: &Arc<CudaStream>) -> Result<Self, DriverError> {
         Ok(Self {
             lattices: stream.clone_htod(&batch.lattices)?,
             state: stream.clone_htod(&batch.state)?,

@@ -13,7 +13,7 @@ use slipfront::device::{Device, DeviceError, DeviceLattice};
 
 use crate::arrays::Arrays;
 use crate::batch::{Batch, Lattice, RECORD, more_bytes};
-use crate::large::LargeKernels;
+use crate::large_lattices::LargeKernels;
 
 /// The kernels as PTX, written by `ptx.py`; empty if that script was not run before this crate was compiled.
 const PTX: &str = include_str!(concat!(env!("OUT_DIR"), "/kernels.ptx"));
@@ -149,7 +149,7 @@ impl Gpu {
     /// Runs the steps of a batch of lattices with at most `most_blocks` blocks each.
     fn launch(&self, batch: &mut Batch, most_blocks: usize) -> Result<(), DriverError> {
         let stream = &self.stream;
-        let mut arrays = Arrays::of(batch, stream)?;
+        let mut arrays = Arrays::copy_to_gpu(batch, stream)?;
         match self.small.iter().find(|kernel| most_blocks <= kernel.most_blocks) {
             Some(kernel) => kernel.launch(stream, &mut arrays, most_blocks)?,
             None => self.large.launch(stream, &mut arrays, &batch.lattices)?,

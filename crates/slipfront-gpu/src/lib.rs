@@ -17,7 +17,7 @@ mod cuda;
 #[cfg(feature = "emulated")]
 mod emulated;
 #[cfg(feature = "cuda")]
-mod large;
+mod large_lattices;
 
 #[cfg(feature = "cuda")]
 pub use cuda::Gpu;

@@ -67,7 +67,7 @@ fn compare(
     };
     let mut fused = DeviceLattice::new(model.clone(), dt_star, from, energies).unwrap();
     if every % 2 == 1 {
-        fused.add_counts(u64::from(every), &PositionBins::of(&model.lattice, &model.drive));
+        fused.add_counts(u64::from(every), &PositionBins::new(&model.lattice, &model.drive));
     }
     let mut emulated = fused.clone();
     for steps in [first, second] {
@@ -169,7 +169,7 @@ proptest! {
         for ((model, dt_star, state), counted) in models.into_iter().zip(counted) {
             let mut simulation = Simulation::new(model.clone(), dt_star, state.clone(), Execution::default());
             prop_assume!(simulation.run(Stop::at_step(u64::from(2 * steps)), &mut []).is_ok(), "diverges");
-            let bins = PositionBins::of(&model.lattice, &model.drive);
+            let bins = PositionBins::new(&model.lattice, &model.drive);
             let mut lattice = DeviceLattice::new(model, dt_star, state.as_ref(), energies).unwrap();
             if counted {
                 lattice.add_counts(5, &bins);

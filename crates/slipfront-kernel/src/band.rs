@@ -7,20 +7,20 @@ use fearless_simd::{Simd, SimdBase};
 
 use super::aligned::{Aligned, Vectors, chunks, chunks_mut};
 use super::blocks::{
-    FrictionLoop, LatticeLoop, Sums, friction, lattice_forces, or_else, spring, times_factor, upward_springs,
-    vector_energy, zero_missing,
+    FrictionLoop, LatticeLoop, Sums, friction, lattice_forces, or_else, upward_springs, vector_energy,
+    zero_missing,
 };
 use super::interface::Interface;
 use super::layout::{Layout, TILE};
 use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
 use super::scratch::{MIRROR, Scratch, whole_vectors};
+use super::sparse::EAST;
 use super::springs::Geometry;
 use super::step::Step;
 use super::thresholds::Thresholds;
 use super::variations::{Variation, Variations};
 use super::vector::{Chunks, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
-use crate::lattice::Bond;
 use crate::properties::Properties;
 
 /// The step of a slip that has not come.
@@ -197,26 +197,22 @@ impl Band {
                 .blocks_differ
                 .then(|| Variations::new(layout, properties, halo, first..first + len)),
             thresholds: properties.changing.map(|law| Thresholds::new(law, len)),
-            interface: Interface::of(layout, properties, first, len),
-            scratch: Mutex::new(Scratch {
-                drive: Vectors::zeros(TILE),
-                free: Vectors::zeros(TILE),
-                free_speed: Aligned::filled(TILE, 0.0),
-                ..Scratch::of_springs(layout.stride)
-            }),
+            interface: Interface::new(layout, properties, first, len),
+            scratch: Mutex::new(Scratch::new(layout.stride)),
             stride: layout.stride,
         };
-        let (blocks, force_to_velocity) = (properties.blocks, properties.force_to_velocity);
+        let force_to_velocity = properties.force_to_velocity;
         for k in 0..len {
-            let Some(b) = layout.block(first + k).filter(|&b| blocks.exists(b)) else {
+            let block = layout.block(first + k).map(|b| properties.blocks.block(b));
+            let Some(block) = block.filter(|block| block.exists) else {
                 continue;
             };
-            let (static_limit, kinetic_force) = (blocks.static_limit(b), blocks.kinetic_force(b));
+            let (static_limit, kinetic_force) = (block.static_limit, block.kinetic_force);
             band.static_limit_squares[k] = static_limit * static_limit;
-            band.kinetic_impulses[k] = force_to_velocity * kinetic_force / blocks.mass(b);
+            band.kinetic_impulses[k] = force_to_velocity * kinetic_force / block.mass;
             if let Some(thresholds) = &mut band.thresholds {
                 let drop = (static_limit - kinetic_force).max(0.0);
-                thresholds.set_drop(k, force_to_velocity * drop / blocks.mass(b));
+                thresholds.set_drop(k, force_to_velocity * drop / block.mass);
                 if drop > 0.0 && thresholds.follow_slip() {
                     // The strength at the present slip is the only threshold.
                     band.static_limit_squares[k] = 0.0;
@@ -224,11 +220,11 @@ impl Band {
             }
             let bit = 1 << (k % LANES);
             band.blocks[k / LANES] |= bit;
-            if !blocks.is_textured(b) {
+            if !block.is_textured {
                 band.in_contact[k / LANES] |= bit;
             }
             band.tiles[k / TILE].displacements_are_old = true;
-            if let Some([u, v]) = blocks.motion(b) {
+            if let Some([u, v]) = block.motion {
                 band.displacement.set(halo + k, u);
                 band.velocity.set(k, v);
                 band.set_moving(k, v != [0.0, 0.0]);
@@ -338,7 +334,7 @@ impl Band {
             // The springs below the band also belong to another band, or to the other end of this one.
             // Computing them twice avoids that a thread waits for another.
             let from = self.below(self.halo);
-            self.upward(simd, geometry, &self.displacement, &mut scratch, from, self.halo);
+            self.upward(simd, geometry, &mut scratch, from, self.halo);
         }
         for t in 0..n_tiles {
             // As late as springs allow, so that the tile is still in the cache at its own turn. Until then
@@ -349,7 +345,7 @@ impl Band {
             let (task, elements) = (self.tasks[t], self.elements(t));
             if task.needs_springs {
                 let (from, to) = (self.halo + elements.start, self.halo + elements.end);
-                self.upward(simd, geometry, &self.displacement, &mut scratch, from, to);
+                self.upward(simd, geometry, &mut scratch, from, to);
             }
             if task.active == 0 {
                 continue;
@@ -411,92 +407,77 @@ impl Band {
     /// for all spring formulas.
     #[inline(never)]
     fn advance_tile<S: Simd>(&mut self, simd: S, step: &Step, quanta: &Quanta, t: usize) {
-        simd.vectorize(
-            #[inline(always)]
-            || self.advance(simd, *step, quanta, t),
-        );
-    }
-
-    #[inline(always)]
-    fn advance<S: Simd>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
         if !self.tiles[t].moving {
             return;
         }
-        if self.tasks[t].sparse {
-            self.advance_vectors(simd, step, quanta, t);
-            return;
-        }
-        let elements = self.elements(t);
-        move_blocks(
-            simd,
-            step.move_dt,
-            &mut self.displacement,
-            &self.velocity,
-            self.halo,
-            elements,
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                if self.tasks[t].sparse {
+                    self.advance_vectors(simd, *step, quanta, t);
+                    return;
+                }
+                let elements = self.elements(t);
+                let (start, n) = (self.halo + elements.start, elements.len());
+                let [ux, uy] = chunks_mut(&mut self.displacement, start, n);
+                let [vx, vy] = chunks(&self.velocity, elements.start, n);
+                let dt = splat(simd, step.move_dt);
+                for (((ux, uy), vx), vy) in ux.iter_mut().zip(uy).zip(vx).zip(vy) {
+                    (load(simd, ux) + dt * load(simd, vx)).store_array(ux);
+                    (load(simd, uy) + dt * load(simd, vy)).store_array(uy);
+                }
+            },
         );
     }
 
-    /// Forces of the springs to the next row of the elements `from..to` of a sheet with the given
-    /// displacements, into the ring buffer. A separate function, compiled once for all callers.
+    /// Forces of the springs to the next row of the elements `from..to`, into the ring buffer. A separate
+    /// function, compiled once for all callers.
     #[inline(never)]
     pub(crate) fn upward<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
-        displacement: &Vectors,
         scratch: &mut Scratch,
         from: usize,
         to: usize,
     ) {
         simd.vectorize(
             #[inline(always)]
-            || self.upward_here(simd, geometry, displacement, scratch, from, to),
-        );
-    }
-
-    #[inline(always)]
-    fn upward_here<S: Simd, G: Geometry>(
-        &self,
-        simd: S,
-        geometry: G,
-        displacement: &Vectors,
-        scratch: &mut Scratch,
-        from: usize,
-        to: usize,
-    ) {
-        for (first, end, own, _) in scratch.ring_segments(self.stride, from, to) {
-            let n = end - first;
-            let north = first + self.stride;
-            let vectors = first / LANES..end / LANES;
-            let here = chunks(displacement, first, n);
-            // Written out: an array's `map` costs more than its elements here.
-            let at = |k| chunks(displacement, k, n);
-            let there = [at(north), at(north + 1), at(north - 1)];
-            let [_, north_masks, north_east_masks, north_west_masks] = &self.masks;
-            let masks = [
-                &north_masks[vectors.clone()],
-                &north_east_masks[vectors.clone()],
-                &north_west_masks[vectors],
-            ];
-            let factors = |bond: usize| self.spring_factors::<G>(bond, first, n);
-            let factors = [factors(1), factors(2), factors(3)];
-            let [north_f, north_east_f, north_west_f] = &mut scratch.upward;
-            let force = [
-                chunks_mut(north_f, own, n),
-                chunks_mut(north_east_f, own, n),
-                chunks_mut(north_west_f, own, n),
-            ];
-            upward_springs(simd, geometry, here, there, (masks, factors), force);
-            // Values beyond the end are read a row later, when the mirror is up to date.
-            if own < MIRROR {
-                let ring = scratch.ring();
-                for force in &mut scratch.upward {
-                    force.x.copy_within(..MIRROR, ring);
-                    force.y.copy_within(..MIRROR, ring);
+            || {
+                for (first, end, own, _) in scratch.ring_segments(self.stride, from, to) {
+                    let n = end - first;
+                    let north = first + self.stride;
+                    let vectors = first / LANES..end / LANES;
+                    let here = chunks(&self.displacement, first, n);
+                    // Written out: an array's `map` costs more than its elements here.
+                    let at = |k| chunks(&self.displacement, k, n);
+                    let there = [at(north), at(north + 1), at(north - 1)];
+                    let [_, north_masks, north_east_masks, north_west_masks] = &self.masks;
+                    let masks = [
+                        &north_masks[vectors.clone()],
+                        &north_east_masks[vectors.clone()],
+                        &north_west_masks[vectors],
+                    ];
+                    let factors = |bond: usize| self.spring_factors::<G>(bond, first, n);
+                    let factors = [factors(1), factors(2), factors(3)];
+                    let [north_f, north_east_f, north_west_f] = &mut scratch.upward;
+                    let force = [
+                        chunks_mut(north_f, own, n),
+                        chunks_mut(north_east_f, own, n),
+                        chunks_mut(north_west_f, own, n),
+                    ];
+                    upward_springs(simd, geometry, here, there, (masks, factors), force);
+                    // Values beyond the end are read a row later, when the mirror is up to date.
+                    if own < MIRROR {
+                        let ring = scratch.ring_buffer_len();
+                        for force in &mut scratch.upward {
+                            force.x.copy_within(..MIRROR, ring);
+                            force.y.copy_within(..MIRROR, ring);
+                        }
+                    }
                 }
-            }
-        }
+            },
+        );
     }
 
     /// Forces and velocities of a tile, and its energies if they are needed. Its springs to the next row and
@@ -511,31 +492,17 @@ impl Band {
         t: usize,
         scratch: &mut Scratch,
     ) {
-        self.lattice_forces(simd, geometry, &self.displacement, t, scratch);
+        self.lattice_forces(simd, geometry, t, scratch);
         let mut lattice_energy = 0;
         if energies {
-            lattice_energy = self.lattice_energies(simd, geometry, quanta, t, scratch);
-        }
-        self.friction_with::<S, G>(simd, step, quanta, energies, t, scratch);
-        self.tiles[t].sums.lattice_energy = lattice_energy;
-    }
-
-    /// Eqs. 2 and 4-7 in a tile with known lattice forces, and its energies if they are needed.
-    #[inline(always)]
-    fn friction_with<S: Simd, G: Geometry>(
-        &mut self,
-        simd: S,
-        step: &Step,
-        quanta: &Quanta,
-        energies: bool,
-        t: usize,
-        scratch: &mut Scratch,
-    ) {
-        if G::BLOCKS_DIFFER && self.interface.is_some() {
-            self.interface_of_tile(simd, step, quanta, t, scratch);
-            return;
+            for v in self.vectors(t) {
+                let energy = self.lattice_energy(simd, geometry, quanta, v, scratch);
+                self.lattice_energy[v] = energy;
+                lattice_energy += energy;
+            }
         }
         match (G::BLOCKS_DIFFER, energies) {
+            (true, _) if self.interface.is_some() => self.interface_of_tile(simd, step, quanta, t, scratch),
             // All energies are computed: a version without them would save little.
             (true, _) => self.friction_of_tile::<S, true, true>(simd, step, quanta, t, scratch),
             (false, true) => {
@@ -545,6 +512,7 @@ impl Band {
                 self.friction_of_tile::<S, false, false>(simd, step, quanta, t, scratch);
             }
         }
+        self.tiles[t].sums.lattice_energy = lattice_energy;
     }
 
     /// Eqs. 2 and 4-7 in a tile with known lattice forces. A separate function, compiled once for all spring
@@ -568,118 +536,84 @@ impl Band {
                 let arrays = self.friction_loop::<S, DIFFER>(simd, *step, (elements, next), scratch, 0, None);
                 let mut sums = Sums::zero(simd);
                 friction::<S, ENERGY, DIFFER>(simd, *step, quanta, arrays, &mut sums);
-                let vectors = self.vectors(t).len();
-                let tile = &mut self.tiles[t];
-                tile.sums = sums.totals::<ENERGY>(quanta, vectors);
-                tile.moving = tile.sums.sliding > 0;
-                // Values known for its single vectors are from before this sweep.
-                tile.settled = false;
-                tile.active_from_step = 0;
+                let sums = sums.totals::<ENERGY>(quanta, self.vectors(t).len());
+                self.set_swept(t, sums, sums.sliding > 0);
             },
         );
     }
 
-    /// Eq. 3 in a tile of a sheet with the given displacements. A separate function, compiled once for all
-    /// callers.
+    /// Sets the sums over a tile that was swept as a whole, and whether an element of it moves.
+    #[inline(always)]
+    pub(crate) fn set_swept(&mut self, t: usize, sums: Sums<i64, f64>, moving: bool) {
+        let tile = &mut self.tiles[t];
+        (tile.sums, tile.moving) = (sums, moving);
+        // Values known for its single vectors are from before this sweep.
+        (tile.settled, tile.active_from_step) = (false, 0);
+    }
+
+    /// Eq. 3 in a tile. A separate function, compiled once for all callers.
     #[inline(never)]
     pub(crate) fn lattice_forces<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
-        displacement: &Vectors,
         t: usize,
         scratch: &mut Scratch,
     ) {
         simd.vectorize(
             #[inline(always)]
-            || self.lattice_forces_here(simd, geometry, displacement, t, scratch),
+            || {
+                let elements = self.elements(t);
+                let start = self.halo + elements.start;
+                // The eight elements before may belong to a skipped tile, which has stored no springs.
+                let mut west = self.east_springs(simd, geometry, start - LANES);
+                for (first, end, own, behind) in
+                    scratch.ring_segments(self.stride, start, self.halo + elements.end)
+                {
+                    let n = end - first;
+                    let [north, north_east, north_west] = &scratch.upward;
+                    let arrays = LatticeLoop {
+                        here: chunks(&self.displacement, first, n),
+                        east: chunks(&self.displacement, first + 1, n),
+                        has_east: &self.masks[0][first / LANES..end / LANES],
+                        to_east: self.spring_factors::<G>(0, first, n),
+                        own: [
+                            chunks(north, own, n),
+                            chunks(north_east, own, n),
+                            chunks(north_west, own, n),
+                        ],
+                        behind: [
+                            chunks(north, behind + 1, n),
+                            chunks(north_east, behind, n),
+                            chunks(north_west, behind + 2, n),
+                        ],
+                        force: chunks_mut(&mut scratch.lattice, first - start, n),
+                    };
+                    lattice_forces(simd, geometry, arrays, &mut west);
+                }
+            },
         );
     }
 
+    /// Energy of the springs of a vector, as in [`Sums`].
     #[inline(always)]
-    fn lattice_forces_here<S: Simd, G: Geometry>(
-        &self,
-        simd: S,
-        geometry: G,
-        displacement: &Vectors,
-        t: usize,
-        scratch: &mut Scratch,
-    ) {
-        let elements = self.elements(t);
-        let start = self.halo + elements.start;
-        // The eight elements before may belong to a skipped tile, which has stored no springs.
-        let mut west = self.east_springs(simd, geometry, displacement, start - LANES);
-        for (first, end, own, behind) in scratch.ring_segments(self.stride, start, self.halo + elements.end) {
-            let n = end - first;
-            let [north, north_east, north_west] = &scratch.upward;
-            let arrays = LatticeLoop {
-                here: chunks(displacement, first, n),
-                east: chunks(displacement, first + 1, n),
-                has_east: &self.masks[0][first / LANES..end / LANES],
-                to_east: self.spring_factors::<G>(0, first, n),
-                own: [
-                    chunks(north, own, n),
-                    chunks(north_east, own, n),
-                    chunks(north_west, own, n),
-                ],
-                behind: [
-                    chunks(north, behind + 1, n),
-                    chunks(north_east, behind, n),
-                    chunks(north_west, behind + 2, n),
-                ],
-                force: chunks_mut(&mut scratch.lattice, first - start, n),
-            };
-            lattice_forces(simd, geometry, arrays, &mut west);
-        }
-    }
-
-    /// Energies of the springs of each vector of a tile, as in [`Sums`], and their sum.
-    #[inline(always)]
-    fn lattice_energies<S: Simd, G: Geometry>(
-        &mut self,
-        simd: S,
-        geometry: G,
-        quanta: &Quanta,
-        t: usize,
-        scratch: &Scratch,
-    ) -> i64 {
-        let mut sum = 0;
-        for v in self.vectors(t) {
-            let energy = self.lattice_energy(simd, geometry, quanta, (&self.displacement, 1.0), v, scratch);
-            self.lattice_energy[v] = energy;
-            sum += energy;
-        }
-        sum
-    }
-
-    /// Energy of the springs of a vector of a sheet with the given displacements and relative thickness, as
-    /// in [`Sums`].
-    #[inline(always)]
-    pub(crate) fn lattice_energy<S: Simd, G: Geometry>(
+    fn lattice_energy<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
         quanta: &Quanta,
-        (displacement, thickness): (&Vectors, f64),
         v: usize,
         scratch: &Scratch,
     ) -> i64 {
         let here = self.halo + v * LANES;
-        let own = here % scratch.ring();
+        let own = here % scratch.ring_buffer_len();
         let upward = |k: usize| load_vec2(simd, chunks(&scratch.upward[k], own, LANES), 0);
-        let east = self.east_springs(simd, geometry, displacement, here);
+        let east = self.east_springs(simd, geometry, here);
         // Each block accounts for the energy of the four springs that begin at it, so that each spring is
         // counted once.
         let springs = [east, upward(0), upward(1), upward(2)];
-        let blocks = (self.blocks[v], thickness);
-        vector_energy(
-            simd,
-            geometry,
-            springs,
-            blocks,
-            self.factors_of::<G>(v),
-            quanta.lattice_energy,
-        )
+        let (factors, quantum) = (self.factors_of::<G>(v), quanta.lattice_energy);
+        vector_energy::<S, G>(simd, springs, self.blocks[v], factors, quantum)
     }
 
     /// Input of [`friction`] (Eqs. 2 and 4-7) for some elements of a tile, with their lattice forces at
@@ -708,7 +642,7 @@ impl Band {
         let mut kinetic_impulses: Chunks = self.kinetic_impulses[elements.clone()].as_chunks().0;
         let mut variation = Variation::default();
         if let Some(variations) = self.variations.as_ref().filter(|_| DIFFER) {
-            variation = variations.of(elements.clone());
+            variation = variations.slice(elements.clone());
         }
         // Here, not in a separate pass: the velocities are about to be read anyway, and skipped blocks do not
         // slip.
@@ -750,22 +684,11 @@ impl Band {
         thresholds.kinetic_impulse(k) * mass * velocity_to_force
     }
 
-    /// Springs to the east of the eight elements from `first` on, counted from the front halo, of a sheet
-    /// with the given displacements.
+    /// Springs to the east of the eight elements from `first` on, counted from the front halo.
     #[inline(always)]
-    fn east_springs<S: Simd, G: Geometry>(
-        &self,
-        simd: S,
-        geometry: G,
-        displacement: &Vectors,
-        first: usize,
-    ) -> Vec2x8<S> {
-        let here = load_vec2(simd, chunks(displacement, first, LANES), 0);
-        let there = load_vec2(simd, chunks(displacement, first + 1, LANES), 0);
+    fn east_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, first: usize) -> Vec2x8<S> {
         let has_east = self.masks[0][first / LANES];
-        let factors = self.spring_factors::<G>(0, first, LANES);
-        let force = spring(simd, geometry, &Bond::EAST, has_east, here, there);
-        times_factor::<S, G>(simd, force, factors, 0)
+        self.springs_between(simd, geometry, EAST, (has_east, first + 1), first)
     }
 
     /// Factors of the springs along a bond of the `n` elements from `first` on, counted from the front halo;
@@ -825,40 +748,23 @@ impl Band {
             if self.tiles[t].displacements_are_old {
                 self.measure_tile(simd, t);
             }
-            let TileState {
-                extent, difference, ..
-            } = self.tiles[t];
-            self.include_measured((extent, difference));
+            for (most, value) in self.extent.iter_mut().zip(self.tiles[t].extent) {
+                *most = most.max(value);
+            }
+            for (most, value) in self.difference.iter_mut().zip(self.tiles[t].difference) {
+                *most = most.max(value);
+            }
         }
     }
 
-    /// Extends the bounds of the band on extent and differences to include a tile of a sheet.
-    fn include_measured(&mut self, (extent, difference): ([f64; 4], [f64; 2])) {
-        for (most, value) in self.extent.iter_mut().zip(extent) {
-            *most = most.max(value);
-        }
-        for (most, value) in self.difference.iter_mut().zip(difference) {
-            *most = most.max(value);
-        }
-    }
-
+    /// Measures [`TileState::extent`] and [`TileState::difference`] of tile `t`.
     #[inline(always)]
     fn measure_tile<S: Simd>(&mut self, simd: S, t: usize) {
-        let (extent, difference) = self.measured(simd, &self.displacement, t);
-        let tile = &mut self.tiles[t];
-        (tile.extent, tile.difference) = (extent, difference);
-        tile.displacements_are_old = false;
-    }
-
-    /// [`TileState::extent`] and [`TileState::difference`] of tile `t` of a sheet with the given
-    /// displacements.
-    #[inline(always)]
-    fn measured<S: Simd>(&self, simd: S, displacement: &Vectors, t: usize) -> ([f64; 4], [f64; 2]) {
         let none = splat(simd, f64::NEG_INFINITY);
         let (mut extent, mut difference) = ([none; 4], [splat(simd, 0.0); 2]);
         for v in self.vectors(t) {
             let here = self.halo + v * LANES;
-            let u = load_vec2(simd, chunks(displacement, here, LANES), 0);
+            let u = self.displacement_at(simd, here);
             let [x, y] = or_else(simd, self.blocks[v], u, [none; 2]);
             let [left, down] = or_else(simd, self.blocks[v], [-u[0], -u[1]], [none; 2]);
             extent[0] = extent[0].max(x);
@@ -866,7 +772,7 @@ impl Band {
             extent[2] = extent[2].max(y);
             extent[3] = extent[3].max(down);
             for (present, there) in self.springs_of(v) {
-                let there = load_vec2(simd, chunks(displacement, there, LANES), 0);
+                let there = self.displacement_at(simd, there);
                 // For blocks only: elements stored beyond the last row may have neighbours that are no
                 // blocks.
                 let [x, y] = zero_missing(simd, present & self.blocks[v], subtract(there, u));
@@ -875,10 +781,10 @@ impl Band {
             }
         }
         let [right, left, up, down] = extent;
-        (
-            [lane_max(right), lane_max(left), lane_max(up), lane_max(down)],
-            [lane_max(difference[0]), lane_max(difference[1])],
-        )
+        let tile = &mut self.tiles[t];
+        tile.extent = [lane_max(right), lane_max(left), lane_max(up), lane_max(down)];
+        tile.difference = [lane_max(difference[0]), lane_max(difference[1])];
+        tile.displacements_are_old = false;
     }
 
     /// Springs of vector `v` to the east, north, north-east and north-west: masks of the existing ones, and
@@ -922,24 +828,5 @@ impl Band {
             }
         }
         most
-    }
-}
-
-/// Moves some elements of a band (Eq. 8), `u += dt v`. Its displacements have a halo.
-#[inline(always)]
-pub(crate) fn move_blocks<S: Simd>(
-    simd: S,
-    dt: f64,
-    displacement: &mut Vectors,
-    velocity: &Vectors,
-    halo: usize,
-    elements: Range<usize>,
-) {
-    let [ux, uy] = chunks_mut(displacement, halo + elements.start, elements.len());
-    let [vx, vy] = chunks(velocity, elements.start, elements.len());
-    let dt = splat(simd, dt);
-    for (((ux, uy), vx), vy) in ux.iter_mut().zip(uy).zip(vx).zip(vy) {
-        (load(simd, ux) + dt * load(simd, vx)).store_array(ux);
-        (load(simd, uy) + dt * load(simd, vy)).store_array(uy);
     }
 }

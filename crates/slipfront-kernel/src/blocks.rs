@@ -18,7 +18,7 @@ use super::vector::{
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
 use crate::integrator::SMALLEST_VELOCITY;
-use crate::lattice::{Bond, SpringStiffness};
+use crate::lattice::{Bond, K_DIAGONAL, K_STRAIGHT};
 
 /// x and y of a quantity of the springs to the next row: north, north-east and north-west.
 pub(crate) type Upward<T> = [[T; 2]; 3];
@@ -186,7 +186,6 @@ fn squares_over_factors<S: Simd, G: Geometry>(
     simd: S,
     [east, north, north_east, north_west]: [Vec2x8<S>; 4],
     factors: [Chunks; 4],
-    chunk: usize,
 ) -> [f64x8<S>; 4] {
     let squares = [
         square(east),
@@ -199,42 +198,25 @@ fn squares_over_factors<S: Simd, G: Geometry>(
     }
     // A missing spring has force 0 and factor 0.
     let least = splat(simd, f64::MIN_POSITIVE);
-    let over = |k: usize| squares[k] / load(simd, &factors[k][chunk]).max(least);
+    let over = |k: usize| squares[k] / load(simd, &factors[k][0]).max(least);
     [over(0), over(1), over(2), over(3)]
 }
 
-/// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west, from
-/// the squares of their forces, and `k_1/k_2`: see [`integers`].
-#[inline(always)]
-fn spring_energies<S: Simd>(
-    simd: S,
-    [east, north, north_east, north_west]: [f64x8<S>; 4],
-    (blocks, thickness, straight_over_diagonal): (u8, f64, f64),
-    quantum: FixedPoint,
-) -> i64x8<S> {
-    // (k/2) extension^2 = F^2/(2k).
-    let straight = east + north;
-    let diagonal = north_east + north_west;
-    let energies = splat(simd, thickness) * (straight + splat(simd, straight_over_diagonal) * diagonal);
-    let energies = zero_missing(simd, blocks, [energies, energies])[0];
-    integers(energies, splat(simd, quantum.shift()))
-}
-
-/// Sum of the energies of a vector's springs to the east, north, north-east and north-west, in quanta of
-/// [`Sums`], from their forces.
+/// Sum of the energies times `2 k_1` of a vector's springs to the east, north, north-east and north-west, in
+/// quanta of [`Sums`], from their forces.
 #[inline(always)]
 pub(crate) fn vector_energy<S: Simd, G: Geometry>(
     simd: S,
-    geometry: G,
     springs: [Vec2x8<S>; 4],
-    (blocks, thickness): (u8, f64),
+    blocks: u8,
     factors: [Chunks; 4],
     quantum: FixedPoint,
 ) -> i64 {
-    let SpringStiffness { straight, diagonal } = geometry.stiffness();
-    let squares = squares_over_factors::<S, G>(simd, springs, factors, 0);
-    let blocks = (blocks, thickness, straight / diagonal);
-    integer_sum(spring_energies(simd, squares, blocks, quantum), quantum, 1)
+    let [east, north, north_east, north_west] = squares_over_factors::<S, G>(simd, springs, factors);
+    // (k/2) extension^2 = F^2/(2k).
+    let energies = (east + north) + splat(simd, K_STRAIGHT / K_DIAGONAL) * (north_east + north_west);
+    let energies = zero_missing(simd, blocks, [energies, energies])[0];
+    integer_sum(integers(energies, splat(simd, quantum.shift())), quantum, 1)
 }
 
 /// Contribution of eight blocks to the sums of `w (u - c)` and `w (u - c)^2`.
@@ -246,30 +228,14 @@ pub(crate) fn displacement_sums<S: Simd, const DIFFER: bool>(
     drive_springs: Chunks,
     quanta: &Quanta,
 ) -> ([i64; 2], i64) {
-    let [x, y] = quanta.displacement;
-    let centres = [splat(simd, x.centre()), splat(simd, y.centre())];
+    let shifts = Shifts::new(simd, quanta);
     // Elements that are no blocks are set to the centre of the window, and add nothing.
-    let u = or_else(simd, blocks, u, centres);
-    let differences = subtract(u, centres);
-    let mut squares = square(differences);
-    let lanes = if DIFFER {
-        let w = load(simd, &drive_springs[0]);
-        squares = w * squares;
-        let [x, y] = quanta.weighted_displacement;
-        [
-            integers(w * differences[0], splat(simd, x.shift())),
-            integers(w * differences[1], splat(simd, y.shift())),
-        ]
-    } else {
-        [
-            integers(u[0], splat(simd, x.shift())),
-            integers(u[1], splat(simd, y.shift())),
-        ]
-    };
-    let [x, y] = quanta.weighted_displacement;
-    let sums = [integer_sum(lanes[0], x, 1), integer_sum(lanes[1], y, 1)];
-    let squares = integers(squares, splat(simd, quanta.displacement_square.shift()));
-    (sums, integer_sum(squares, quanta.displacement_square, 1))
+    let u = or_else(simd, blocks, u, shifts.centres);
+    let mut sums = Sums::zero(simd);
+    sums.add_displacement::<DIFFER>(simd, &shifts, u, drive_springs, 0);
+    sums.add_stretch::<DIFFER>(simd, quanta, &shifts, u, drive_springs, 0);
+    let sums = sums.totals::<true>(quanta, 1);
+    (sums.displacement, sums.displacement_square)
 }
 
 #[inline(always)]
@@ -370,7 +336,7 @@ pub(crate) struct Shifts<S: Simd> {
 
 impl<S: Simd> Shifts<S> {
     #[inline(always)]
-    pub(crate) fn of(simd: S, quanta: &Quanta) -> Self {
+    pub(crate) fn new(simd: S, quanta: &Quanta) -> Self {
         let [x, y] = quanta.displacement;
         let [weighted_x, weighted_y] = quanta.weighted_displacement;
         Self {
@@ -599,13 +565,13 @@ impl Sums<i128, f64, u64> {
 
 /// The multiples of a quantum nearest to eight numbers, plus the bits of `shift`: see [`FixedPoint::shift`].
 #[inline(always)]
-pub(crate) fn integers<S: Simd>(numbers: f64x8<S>, shift: f64x8<S>) -> i64x8<S> {
+fn integers<S: Simd>(numbers: f64x8<S>, shift: f64x8<S>) -> i64x8<S> {
     (numbers + shift).bitcast()
 }
 
 /// Sum of the multiples of a quantum in the [`integers`] of `vectors` vectors.
 #[inline(always)]
-pub(crate) fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors: usize) -> i64 {
+fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors: usize) -> i64 {
     let added = ((vectors * LANES) as i64).wrapping_mul(quantum.shift().to_bits() as i64);
     lane_sum(lanes).wrapping_sub(added)
 }
@@ -707,7 +673,7 @@ pub(crate) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
     let (moving, slipped) = (&mut arrays.moving[..n], &mut arrays.slipped[..n]);
     let first_slip = &mut arrays.first_slip[..n];
     let zero = splat(simd, 0.0);
-    let shifts = Shifts::of(simd, quanta);
+    let shifts = Shifts::new(simd, quanta);
     let variation = arrays.variation.first::<DIFFER>(n);
     let mut resting = 0;
     for c in 0..n {
@@ -775,7 +741,7 @@ pub(crate) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
 
 /// Values of eight blocks, times the weight of each block for a heterogeneous slider.
 #[inline(always)]
-pub(crate) fn weighted<S: Simd, const DIFFER: bool>(
+fn weighted<S: Simd, const DIFFER: bool>(
     simd: S,
     numbers: f64x8<S>,
     weights: Chunks,

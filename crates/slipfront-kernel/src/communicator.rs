@@ -25,6 +25,25 @@ pub trait Communicator: Debug + Send + Sync {
 
     /// Replaces every value by its sum over all ranks, modulo 2^64.
     fn sum(&self, values: &mut [i64]);
+
+    /// The largest of the values of all ranks.
+    fn largest_of(&self, value: f64) -> f64 {
+        let mut largest = [value];
+        self.largest(&mut largest);
+        largest[0]
+    }
+
+    /// The least of the values of all ranks.
+    fn least_of(&self, value: f64) -> f64 {
+        -self.largest_of(-value)
+    }
+
+    /// The sum of the numbers of all ranks.
+    fn sum_of(&self, number: usize) -> usize {
+        let mut sum = [number as i64];
+        self.sum(&mut sum);
+        sum[0] as usize
+    }
 }
 
 /// The lowest rank on which `is_so` is true, returned on all ranks; none if it is true on none.
@@ -37,17 +56,14 @@ pub trait Communicator: Debug + Send + Sync {
 pub fn lowest_rank(communicator: &dyn Communicator, is_so: bool) -> Option<usize> {
     let (rank, size) = (communicator.rank(), communicator.size());
     // Counted from above, so that the lowest rank has the largest number.
-    let mut from_above = [if is_so { (size - rank) as f64 } else { 0.0 }];
-    communicator.largest(&mut from_above);
-    (from_above[0] > 0.0).then(|| size - from_above[0] as usize)
+    let from_above = communicator.largest_of(if is_so { (size - rank) as f64 } else { 0.0 });
+    (from_above > 0.0).then(|| size - from_above as usize)
 }
 
 /// Sends the text of one `rank` to all ranks; the texts of the other ranks are ignored.
 pub fn text_of(communicator: &dyn Communicator, rank: usize, text: &str) -> String {
     let own = if communicator.rank() == rank { text } else { "" };
-    let mut length = [own.len() as i64];
-    communicator.sum(&mut length);
-    let mut words = vec![0; length[0] as usize];
+    let mut words = vec![0; communicator.sum_of(own.len())];
     for (word, byte) in words.iter_mut().zip(own.bytes()) {
         *word = i64::from(byte);
     }

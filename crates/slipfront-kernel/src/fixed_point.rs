@@ -47,7 +47,7 @@ impl FixedPoint {
     }
 
     /// Multiples of the quantum that belongs to this [limit](Self::limit).
-    pub fn of_limit(limit: f64) -> Self {
+    pub fn with_limit(limit: f64) -> Self {
         Self { limit }
     }
 
@@ -107,10 +107,10 @@ impl Window {
     }
 
     /// The window with this [centre](Self::centre) and the limit of its [differences](Self::differences).
-    pub fn of([centre, limit]: [f64; 2]) -> Self {
+    pub fn new([centre, limit]: [f64; 2]) -> Self {
         Self {
             centre,
-            differences: FixedPoint::of_limit(limit),
+            differences: FixedPoint::with_limit(limit),
         }
     }
 
@@ -149,9 +149,8 @@ pub fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
 pub fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) -> f64) -> f64 {
     // A NaN term makes the bound infinite.
     let size = |term: f64| if term.is_nan() { f64::INFINITY } else { term.abs() };
-    let mut largest = [reductions::largest(n, |k| size(term(k)))];
-    ranks.largest(&mut largest);
-    let fixed_point = FixedPoint::new(largest[0]);
+    let largest = ranks.largest_of(reductions::largest(n, |k| size(term(k))));
+    let fixed_point = FixedPoint::new(largest);
     let mut words = split(fixed_point.sum(n, term));
     ranks.sum(&mut words);
     fixed_point.value(join(words))
@@ -227,6 +226,33 @@ impl RunningSum {
             were_bounds &= sum.restart(largest[k]);
         }
         were_bounds.then_some(found)
+    }
+}
+
+/// Number of blocks whose terms [`sums_by_parts`] adds at once: so few that they are on the stack.
+pub const PART: usize = 1 << 10;
+
+/// Sums over `n` blocks, each with the same bits for any order: `read` receives the number of a sum and the
+/// first of some blocks, and writes the terms of these blocks. Without memory for all blocks. All ranks must
+/// call this together.
+pub fn sums_by_parts<const N: usize>(
+    ranks: &dyn Communicator,
+    n: usize,
+    mut read: impl FnMut(usize, usize, &mut [f64]),
+) -> [f64; N] {
+    let mut terms = [0.0; PART];
+    let mut sums = [RunningSum::default(); N];
+    loop {
+        for (number, sum) in sums.iter_mut().enumerate() {
+            for first in (0..n).step_by(PART) {
+                let terms = &mut terms[..PART.min(n - first)];
+                read(number, first, terms);
+                sum.add(terms);
+            }
+        }
+        if let Some(found) = RunningSum::finish(ranks, &mut sums) {
+            return found;
+        }
     }
 }
 

@@ -37,7 +37,7 @@ pub(crate) struct InterfaceLoop<'a> {
 
 impl Interface {
     /// The interface under `n` elements from `first` on; none where friction acts in the plane.
-    pub(crate) fn of(layout: &Layout, properties: &Properties, first: usize, n: usize) -> Option<Self> {
+    pub(crate) fn new(layout: &Layout, properties: &Properties, first: usize, n: usize) -> Option<Self> {
         let foundation = properties.foundation?;
         let zeros = |n| Aligned::filled(n, 0.0);
         let mut interface = Self {
@@ -47,13 +47,11 @@ impl Interface {
             still: zeros(TILE),
         };
         for k in 0..n {
-            let Some(b) = layout
-                .block(first + k)
-                .filter(|&b| !properties.blocks.is_textured(b))
-            else {
+            let block = layout.block(first + k).map(|b| properties.blocks.block(b));
+            let Some(block) = block.filter(|block| !block.is_textured) else {
                 continue;
             };
-            let load = properties.blocks.normal_force(b);
+            let load = block.normal_force;
             interface.foundation[k] = foundation;
             interface.load[k] = load;
             interface.inverse_load[k] = if load > 0.0 { 1.0 / load } else { 0.0 };
@@ -99,7 +97,7 @@ pub(crate) fn friction_along_x<S: Simd>(
     (arrays, interface): (FrictionLoop, InterfaceLoop),
     sums: &mut Sums<i64x8<S>, f64x8<S>>,
 ) -> bool {
-    let (zero, shifts) = (splat(simd, 0.0), Shifts::of(simd, quanta));
+    let (zero, shifts) = (splat(simd, 0.0), Shifts::new(simd, quanta));
     let [vx, vy] = arrays.velocity;
     let has_loads = !arrays.variation.loads.is_empty();
     let mut moves = false;

@@ -54,81 +54,10 @@ pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
     n_waves as f64 / ((0..n_waves).map(response).sum::<f64>() * k_drive)
 }
 
-/// Stiffness of the springs between neighbouring blocks, in units of `E h`.
-///
-/// ```
-/// use slipfront_kernel::lattice::{K_DIAGONAL, K_STRAIGHT, SpringStiffness};
-/// let SpringStiffness { straight, diagonal } = SpringStiffness::with_ratio(3.0);
-/// assert_eq!([straight, diagonal], [K_STRAIGHT, K_DIAGONAL]);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpringStiffness {
-    /// Springs to straight neighbours, `k_1`.
-    pub straight: f64,
-    /// Springs to diagonal neighbours, `k_2`.
-    pub diagonal: f64,
-}
-
-impl Default for SpringStiffness {
-    /// The springs of the paper, `k_1 = 3/4` and `k_2 = 3/8`: the only isotropic ones.
-    fn default() -> Self {
-        Self {
-            straight: K_STRAIGHT,
-            diagonal: K_DIAGONAL,
-        }
-    }
-}
-
-impl SpringStiffness {
-    /// Springs with which a lattice is `ratio` times as stiff along a long wave that runs along an axis as
-    /// across it. The geometric mean of both stiffnesses is that of the paper's springs:
-    ///
-    /// ```text
-    /// k_2 = sqrt(27/ratio)/8   k_1 = (ratio - 1) k_2   along: (k_1 + k_2) q^2 = ratio k_2 q^2   across: k_2 q^2
-    /// ```
-    ///
-    /// Only a ratio of 3 makes it isotropic: central springs of a square lattice have `C_12 = C_66`.
-    pub fn with_ratio(ratio: f64) -> Self {
-        let diagonal = (27.0 / ratio).sqrt() / 8.0;
-        Self {
-            straight: (ratio - 1.0) * diagonal,
-            diagonal,
-        }
-    }
-
-    /// The four bonds per block that together give every spring once, with these springs.
-    pub fn bonds(self) -> [Bond; 4] {
-        Bond::ALL.map(|bond| self.bond(bond))
-    }
-
-    /// The given bond with one of these springs.
-    #[inline(always)]
-    pub fn bond(self, bond: Bond) -> Bond {
-        Bond {
-            stiffness: self.of(&bond),
-            ..bond
-        }
-    }
-
-    /// Stiffness against a strain along an axis, uniform in the other direction: `k_1 + k_2`.
-    pub fn along(self) -> f64 {
-        self.straight + self.diagonal
-    }
-
-    /// Speed of long shear waves along an axis, `c_S = sqrt(k_2)`, in blocks per unit of t*, of a slider with
-    /// equal blocks.
-    pub fn shear_wave_speed(self) -> f64 {
-        self.diagonal.sqrt()
-    }
-
-    /// Stiffness of the spring along a bond.
-    #[inline(always)]
-    pub fn of(self, bond: &Bond) -> f64 {
-        match bond.offset {
-            [0, _] | [_, 0] => self.straight,
-            _ => self.diagonal,
-        }
-    }
+/// Speed of long shear waves along an axis, `c_S = sqrt(k_2)`, in blocks per unit of t*, of a slider with
+/// equal blocks.
+pub fn shear_wave_speed() -> f64 {
+    K_DIAGONAL.sqrt()
 }
 
 /// Boundary of the lattice at both ends of one axis.
@@ -167,11 +96,6 @@ impl Edge {
     /// Number of blocks from the edge to the opposite edge.
     pub fn n_across(self, lattice: &Lattice) -> usize {
         [lattice.nx, lattice.ny][self.axis()]
-    }
-
-    /// Number of blocks along the edge.
-    pub fn n_blocks(self, lattice: &Lattice) -> usize {
-        [lattice.ny, lattice.nx][self.axis()]
     }
 
     /// Number of blocks between the edge and block `b`.

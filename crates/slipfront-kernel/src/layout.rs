@@ -26,9 +26,10 @@ const MIN_ROW_ELEMENTS: usize = 16;
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
     lattice: Lattice,
-    /// The first row of the lattice that is stored here, and their number.
+    /// The first row of the lattice that is stored here.
     first_row: usize,
-    rows: usize,
+    /// Number of rows that are stored here.
+    pub rows: usize,
     /// Number of elements from one row to the next.
     pub stride: usize,
     /// Ghosts before the first block of a row.
@@ -88,11 +89,6 @@ impl Layout {
         (j < self.rows).then(|| self.lattice.block(i, j))
     }
 
-    /// Number of rows.
-    pub fn rows(&self) -> usize {
-        self.rows
-    }
-
     /// Row of the lattice that is stored as row `j`.
     pub fn lattice_row(&self, j: usize) -> usize {
         self.first_row + j
@@ -111,7 +107,7 @@ impl Layout {
         elements: Range<usize>,
     ) -> impl Iterator<Item = (usize, usize, Range<usize>)> + use<> {
         let layout = *self;
-        let rows = elements.start / self.stride..elements.end.div_ceil(self.stride).min(self.rows());
+        let rows = elements.start / self.stride..elements.end.div_ceil(self.stride).min(self.rows);
         rows.filter_map(move |j| {
             let first = layout.element(0, j);
             let (from, to) = (
@@ -260,7 +256,7 @@ mod tests {
         };
         mark(first, last);
         if layout.has_ghosts() {
-            let copies = (0..layout.rows()).flat_map(|j| layout.ghosts_of_row(j));
+            let copies = (0..layout.rows).flat_map(|j| layout.ghosts_of_row(j));
             copies
                 .filter(|(_, copied)| (first..=last).contains(copied))
                 .for_each(|(ghost, _)| mark(ghost, ghost));

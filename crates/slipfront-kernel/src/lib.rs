@@ -45,7 +45,7 @@ mod stress;
 #[cfg(not(test))]
 mod sweep;
 mod thresholds;
-mod upright;
+mod upright_sheet;
 mod variations;
 mod vector;
 
@@ -55,11 +55,11 @@ pub use blocks::Sums;
 pub use integrator::{Integrator, SMALLEST_VELOCITY};
 pub use layout::{Layout, TILE, VECTORS};
 pub use motion_bounds::MotionBounds;
-pub use properties::{Blocks, Properties};
+pub use properties::{Block, Blocks, Properties};
 pub use quanta::Quanta;
 pub use response::{Join, SurfaceResponse, Threads, next_side};
 pub use schedule::SweepConditions;
-pub use springs::{SeriesNumbers, SquareRoot};
+pub use springs::series_coefficients;
 pub use step::Step;
 #[cfg(not(test))]
 pub use stress::{OfTile, Stress, StressReader};

@@ -46,52 +46,27 @@ impl MotionBounds {
     /// The bounds as numbers, in the order of the fields; a window gives its centre and the limit of its
     /// differences.
     pub fn to_numbers(self) -> [f64; Self::LEN] {
-        let [right, left, up, down] = self.extent;
-        let [along_x, along_y] = self.difference;
-        let [x, y] = self.windows;
-        let (growth, speed, spring_range) = (self.growth, self.speed, self.spring_range.limit());
-        let [x, y] = [x, y].map(|window| [window.centre(), window.differences().limit()]);
-        [
-            right,
-            left,
-            up,
-            down,
-            along_x,
-            along_y,
-            growth,
-            speed,
-            x[0],
-            x[1],
-            y[0],
-            y[1],
-            spring_range,
-        ]
+        let mut numbers = [0.0; Self::LEN];
+        numbers[..4].copy_from_slice(&self.extent);
+        numbers[4..6].copy_from_slice(&self.difference);
+        (numbers[6], numbers[7]) = (self.growth, self.speed);
+        for (numbers, window) in numbers[8..12].chunks_exact_mut(2).zip(self.windows) {
+            numbers.copy_from_slice(&[window.centre(), window.differences().limit()]);
+        }
+        numbers[12] = self.spring_range.limit();
+        numbers
     }
 
     /// Bounds from the numbers that [`to_numbers`](Self::to_numbers) returned.
-    pub fn of_numbers(numbers: [f64; Self::LEN]) -> Self {
-        let [
-            right,
-            left,
-            up,
-            down,
-            along_x,
-            along_y,
-            growth,
-            speed,
-            x0,
-            x1,
-            y0,
-            y1,
-            spring_range,
-        ] = numbers;
+    pub fn from_numbers(numbers: [f64; Self::LEN]) -> Self {
+        let pair = |first: usize| [numbers[first], numbers[first + 1]];
         Self {
-            extent: [right, left, up, down],
-            difference: [along_x, along_y],
-            growth,
-            speed,
-            windows: [Window::of([x0, x1]), Window::of([y0, y1])],
-            spring_range: FixedPoint::of_limit(spring_range),
+            extent: [numbers[0], numbers[1], numbers[2], numbers[3]],
+            difference: pair(4),
+            growth: numbers[6],
+            speed: numbers[7],
+            windows: [8, 10].map(|first| Window::new(pair(first))),
+            spring_range: FixedPoint::with_limit(numbers[12]),
         }
     }
 

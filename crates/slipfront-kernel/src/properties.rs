@@ -4,38 +4,37 @@ use crate::lattice::Bond;
 use crate::layout::Layout;
 use crate::thresholds::ChangingLaw;
 
+/// Properties of a place of the lattice with its block.
+#[derive(Clone, Copy, Debug)]
+pub struct Block {
+    /// Whether there is a block at this place.
+    pub exists: bool,
+    /// Whether the block has no contact with the substrate.
+    pub is_textured: bool,
+    /// Static threshold `mu_s F_n`.
+    pub static_limit: f64,
+    /// Kinetic friction `mu_k F_n` at rest.
+    pub kinetic_force: f64,
+    /// Normal force `F_n` of the load.
+    pub normal_force: f64,
+    /// Mass over that of a plain block.
+    pub mass: f64,
+    /// Stiffness of the drive spring over `k_s`.
+    pub drive_spring: f64,
+    /// Dead load over that of [`Step`](crate::Step).
+    pub relative_dead_load: f64,
+    /// Displacement and velocity at the start; none at rest.
+    pub motion: Option<[[f64; 2]; 2]>,
+}
+
 /// The blocks of a slider. They have the indices of [`Layout::block`].
 pub trait Blocks: Sync {
-    /// Whether there is a block at this place of the lattice.
-    fn exists(&self, block: usize) -> bool;
-
-    /// Whether a block has no contact with the substrate.
-    fn is_textured(&self, block: usize) -> bool;
-
-    /// Static threshold `mu_s F_n`.
-    fn static_limit(&self, block: usize) -> f64;
-
-    /// Kinetic friction `mu_k F_n` at rest.
-    fn kinetic_force(&self, block: usize) -> f64;
-
-    /// Normal force `F_n` of the load.
-    fn normal_force(&self, block: usize) -> f64;
-
-    /// Mass over that of a plain block.
-    fn mass(&self, block: usize) -> f64;
-
-    /// Stiffness of the drive spring over `k_s`.
-    fn drive_spring(&self, block: usize) -> f64;
-
-    /// Dead load over that of [`Step`](crate::Step).
-    fn relative_dead_load(&self, block: usize) -> f64;
+    /// Properties of a block.
+    fn block(&self, block: usize) -> Block;
 
     /// Stiffness of the spring from the block in a column and row to the one `offset` away over the stiffness
     /// of its bond; 0 where there is none.
     fn spring(&self, column_row: [usize; 2], offset: [isize; 2]) -> f64;
-
-    /// Displacement and velocity at the start; none at rest.
-    fn motion(&self, block: usize) -> Option<[[f64; 2]; 2]>;
 }
 
 /// Properties of a slider.

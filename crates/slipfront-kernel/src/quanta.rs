@@ -4,6 +4,7 @@
 use super::step::Step;
 use super::variations::LargestFactors;
 use crate::fixed_point::{FixedPoint, Window};
+use crate::lattice::{K_DIAGONAL, K_STRAIGHT};
 use crate::motion_bounds::MotionBounds;
 
 /// Quanta of the sums in a sweep.
@@ -32,13 +33,12 @@ impl Quanta {
     /// Quanta for a step from bounds on the motion and the largest factors of any block.
     pub fn new(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -> Self {
         let [x, y] = bounds.windows.map(|window| window.differences().limit());
-        let spring_force = largest.springs.straight * bounds.spring_range.limit();
+        let spring_force = K_STRAIGHT * bounds.spring_range.limit();
         let speed = highest_speed(step, bounds, largest);
         let &LargestFactors {
             modulus,
             drive_spring,
             mass,
-            springs,
             ..
         } = largest;
         Self {
@@ -56,11 +56,7 @@ impl Quanta {
             ),
             // Two straight springs, and two diagonal ones, with force factor k_2/k_1 and weight k_1/k_2.
             lattice_energy: FixedPoint::new(
-                MARGIN
-                    * modulus
-                    * (2.0 + 2.0 * (springs.diagonal / springs.straight))
-                    * spring_force
-                    * spring_force,
+                MARGIN * modulus * (2.0 + 2.0 * (K_DIAGONAL / K_STRAIGHT)) * spring_force * spring_force,
             ),
         }
     }
@@ -76,7 +72,7 @@ fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &LargestFactors) -
         // The force of a spring is at most its stiffness times the difference of the displacements of its
         // ends.
         let dead_load = largest.load * step.dead_load[axis].abs();
-        force += largest.modulus * 4.0 * largest.springs.along() * bounds.spring_difference(axis)
+        force += largest.modulus * 4.0 * (K_STRAIGHT + K_DIAGONAL) * bounds.spring_difference(axis)
             + (largest.drive_spring * (step.k_drive * stretch) + dead_load);
         if axis == 1 && largest.foundation > 0.0 {
             force += largest.foundation * low.abs().max(high.abs());

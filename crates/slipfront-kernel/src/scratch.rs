@@ -44,19 +44,21 @@ pub(crate) fn whole_vectors(elements: usize) -> usize {
 }
 
 impl Scratch {
-    /// Room for the springs of a tile, with `stride` elements per row.
-    pub(crate) fn of_springs(stride: usize) -> Self {
+    /// Room for a tile, with `stride` elements per row.
+    pub(crate) fn new(stride: usize) -> Self {
         let ring = whole_vectors(stride + 1 + TILE + LANES) + MIRROR;
         Self {
             upward: [(); 3].map(|()| Vectors::zeros(ring)),
             lattice: Vectors::zeros(TILE),
-            ..Self::default()
+            drive: Vectors::zeros(TILE),
+            free: Vectors::zeros(TILE),
+            free_speed: Aligned::filled(TILE, 0.0),
         }
     }
 
     /// Number of elements in the ring buffer.
     #[inline(always)]
-    pub(crate) fn ring(&self) -> usize {
+    pub(crate) fn ring_buffer_len(&self) -> usize {
         self.upward[0].x.len() - MIRROR
     }
 
@@ -70,7 +72,7 @@ impl Scratch {
         from: usize,
         to: usize,
     ) -> impl Iterator<Item = (usize, usize, usize, usize)> + use<> {
-        let ring = self.ring();
+        let ring = self.ring_buffer_len();
         let mut first = from;
         std::iter::from_fn(move || {
             if first >= to {

@@ -19,7 +19,7 @@ use super::vector::{Chunks, LANES, Vec2x8, add, load, load_vec2, splat, subtract
 use crate::lattice::Bond;
 
 /// Positions of the bonds in [`Bond::ALL`].
-const EAST: usize = 0;
+pub(crate) const EAST: usize = 0;
 const NORTH: usize = 1;
 const NORTH_EAST: usize = 2;
 const NORTH_WEST: usize = 3;
@@ -193,14 +193,14 @@ impl Band {
 
     /// Displacements of the eight elements from `first` on, counted from the front halo.
     #[inline(always)]
-    fn displacement_at<S: Simd>(&self, simd: S, first: usize) -> Vec2x8<S> {
+    pub(crate) fn displacement_at<S: Simd>(&self, simd: S, first: usize) -> Vec2x8<S> {
         load_vec2(simd, chunks(&self.displacement, first, LANES), 0)
     }
 
     /// Force of the springs along `bond` of the eight elements from `first` on, with their other ends from
     /// `there` on.
     #[inline(always)]
-    fn springs_between<S: Simd, G: Geometry>(
+    pub(crate) fn springs_between<S: Simd, G: Geometry>(
         &self,
         simd: S,
         geometry: G,
@@ -222,19 +222,6 @@ impl Band {
         [0, 1, 2, 3].map(|bond| self.spring_factors::<G>(bond, self.halo + v * LANES, LANES))
     }
 
-    /// Springs of eight blocks to the east, north, north-east and north-west.
-    #[inline(always)]
-    fn own_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, v: usize) -> [Vec2x8<S>; 4] {
-        let here = self.halo + v * LANES;
-        let [east, north, north_east, north_west] = self.springs_of(v);
-        [
-            self.springs_between(simd, geometry, EAST, east, here),
-            self.springs_between(simd, geometry, NORTH, north, here),
-            self.springs_between(simd, geometry, NORTH_EAST, north_east, here),
-            self.springs_between(simd, geometry, NORTH_WEST, north_west, here),
-        ]
-    }
-
     /// Computes the lattice forces (Eq. 3) on eight blocks, into a place in the scratch array; returns the
     /// energy of their springs.
     #[inline(always)]
@@ -246,8 +233,14 @@ impl Band {
         v: usize,
         (scratch, place): (&mut Scratch, usize),
     ) -> i64 {
-        let own = self.own_springs(simd, geometry, v);
         let here = self.halo + v * LANES;
+        let [east, north, north_east, north_west] = self.springs_of(v);
+        let own = [
+            self.springs_between(simd, geometry, EAST, east, here),
+            self.springs_between(simd, geometry, NORTH, north, here),
+            self.springs_between(simd, geometry, NORTH_EAST, north_east, here),
+            self.springs_between(simd, geometry, NORTH_WEST, north_west, here),
+        ];
         let below = here - self.stride;
         let [east, north, north_east, north_west] = &self.masks;
         // The springs from below and from the west belong to other vectors, at places that are no whole
@@ -267,14 +260,8 @@ impl Band {
         let [fx, fy] = chunks_mut(&mut scratch.lattice, place, LANES);
         x.store_array(&mut fx[0]);
         y.store_array(&mut fy[0]);
-        vector_energy(
-            simd,
-            geometry,
-            own,
-            (self.blocks[v], 1.0),
-            self.factors_of::<G>(v),
-            quanta.lattice_energy,
-        )
+        let (factors, quantum) = (self.factors_of::<G>(v), quanta.lattice_energy);
+        vector_energy::<S, G>(simd, own, self.blocks[v], factors, quantum)
     }
 }
 

@@ -4,18 +4,15 @@
 use fearless_simd::{Simd, SimdFloat, f64x8};
 
 use super::vector::{Vec2x8, scale, splat, square};
-use crate::lattice::{Bond, SpringStiffness};
+use crate::lattice::Bond;
 
 /// Formula for the force of a spring.
 pub(crate) trait Geometry: Copy {
     /// Whether springs, masses or any other property differs from block to block.
     const BLOCKS_DIFFER: bool = false;
 
-    /// Stiffness of the springs.
-    fn stiffness(self) -> SpringStiffness;
-
-    /// Force of the spring along `bond` on a block, as [`Bond::force`] with the [stiffness](Self::stiffness)
-    /// of this formula; `e` is the displacement of the neighbour less that of the block.
+    /// Force of the spring along `bond` on a block, as [`Bond::force`]; `e` is the displacement of the
+    /// neighbour less that of the block.
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S>;
 }
 
@@ -27,11 +24,6 @@ impl<G: Geometry> Geometry for Differing<G> {
     const BLOCKS_DIFFER: bool = true;
 
     #[inline(always)]
-    fn stiffness(self) -> SpringStiffness {
-        self.0.stiffness()
-    }
-
-    #[inline(always)]
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
         self.0.force(simd, bond, e)
     }
@@ -39,19 +31,12 @@ impl<G: Geometry> Geometry for Differing<G> {
 
 /// The formula with the length of the spring, exact at any strain, with the same bits as [`Bond::force`].
 #[derive(Clone, Copy)]
-pub struct SquareRoot {
+pub(crate) struct SquareRoot {
     /// Displacements over lengths, `epsilon = P mu_s/(E h)`.
-    pub epsilon: f64,
-    /// Stiffness of the springs between blocks.
-    pub stiffness: SpringStiffness,
+    pub(crate) epsilon: f64,
 }
 
 impl Geometry for SquareRoot {
-    #[inline(always)]
-    fn stiffness(self) -> SpringStiffness {
-        self.stiffness
-    }
-
     #[inline(always)]
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
         let epsilon = splat(simd, self.epsilon);
@@ -64,8 +49,8 @@ impl Geometry for SquareRoot {
         // squares multiplied out, it loses no digits.
         let along = splat(simd, bond.rest[0]) * e[0] + splat(simd, bond.rest[1]) * e[1];
         let stretch = splat(simd, 2.0) * along + epsilon * square(e);
-        let tension = splat(simd, self.stiffness.of(bond)) * stretch
-            / (length * (length + splat(simd, bond.rest_length)));
+        let tension =
+            splat(simd, bond.stiffness) * stretch / (length * (length + splat(simd, bond.rest_length)));
         scale(tension, r)
     }
 }
@@ -84,27 +69,13 @@ impl Geometry for SquareRoot {
 #[derive(Clone, Copy)]
 pub(crate) struct Series<const DEGREE: usize> {
     /// Displacements over lengths, `epsilon = P mu_s/(E h)`.
-    pub epsilon: f64,
-    /// Stiffness of the springs between blocks.
-    pub stiffness: SpringStiffness,
+    pub(crate) epsilon: f64,
 }
 
-/// Constants of the series, for a device that evaluates it itself.
-#[derive(Clone, Copy, Debug)]
-pub struct SeriesNumbers {
-    /// Coefficients of the long series for straight and for diagonal springs; the short series has the first
-    /// four of them.
-    pub coefficients: [[f64; 8]; 2],
-}
-
-impl SeriesNumbers {
-    /// Constants for springs of this stiffness.
-    pub fn new(epsilon: f64, stiffness: SpringStiffness) -> Self {
-        let long = Series::<7> { epsilon, stiffness };
-        Self {
-            coefficients: [Bond::EAST, Bond::NORTH_EAST].map(|bond| long.coefficients(&bond)),
-        }
-    }
+/// Coefficients of the long series for straight and for diagonal springs, for a device that evaluates it
+/// itself; the short series has the first four of them.
+pub fn series_coefficients(epsilon: f64) -> [[f64; 8]; 2] {
+    [Bond::EAST, Bond::NORTH_EAST].map(|bond| Series::<7> { epsilon }.coefficients(&bond))
 }
 
 /// Coefficients of g: `(-1)^m (2m + 2)!/((m + 1)!^2 4^(m + 1))`.
@@ -131,7 +102,7 @@ impl<const DEGREE: usize> Series<DEGREE> {
     fn coefficients(self, bond: &Bond) -> [f64; 8] {
         let per_square = 1.0 / (bond.rest[0] * bond.rest[0] + bond.rest[1] * bond.rest[1]);
         let mut coefficients = G;
-        let mut factor = self.stiffness.of(bond) * per_square;
+        let mut factor = bond.stiffness * per_square;
         for c in &mut coefficients {
             *c *= factor;
             factor *= self.epsilon * per_square;
@@ -141,11 +112,6 @@ impl<const DEGREE: usize> Series<DEGREE> {
 }
 
 impl<const DEGREE: usize> Geometry for Series<DEGREE> {
-    #[inline(always)]
-    fn stiffness(self) -> SpringStiffness {
-        self.stiffness
-    }
-
     #[inline(always)]
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
         // d.e of a rest vector of ones and zeros.
@@ -202,9 +168,8 @@ mod tests {
     /// last place.
     fn assert_same<const DEGREE: usize>(bond: &Bond, e: [f64; 2], epsilon: f64) {
         let exact = bond.force(e, epsilon);
-        let stiffness = SpringStiffness::default();
-        let by_root = force(SquareRoot { epsilon, stiffness }, bond, e);
-        let by_series = force(Series::<DEGREE> { epsilon, stiffness }, bond, e);
+        let by_root = force(SquareRoot { epsilon }, bond, e);
+        let by_series = force(Series::<DEGREE> { epsilon }, bond, e);
         for axis in 0..2 {
             let unit = f64::EPSILON * exact[axis].abs();
             assert!((by_root[axis] - exact[axis]).abs() <= 4.0 * unit);

@@ -37,21 +37,21 @@ pub struct StressReader<'a> {
 }
 
 impl<'a> StressReader<'a> {
-    /// Reads a stress at a step, with springs of this [`SquareRoot`].
-    pub fn new(level: Level, band: &'a Band, stress: Stress, step: Step, springs: SquareRoot) -> Self {
+    /// Reads a stress at a step, with springs under a load of strain `epsilon`.
+    pub fn new(level: Level, band: &'a Band, stress: Stress, step: Step, epsilon: f64) -> Self {
         Self {
             level,
             band,
             stress,
             step,
-            springs,
+            springs: SquareRoot { epsilon },
             springs_end: 0,
             scratch: band.lock_scratch(),
         }
     }
 
     /// Replaces the kinetic friction of the elements of tile `t`, which matters where they move, by their
-    /// stress. The tile is after those read before.
+    /// stress, with friction as for one block. The tile is after those read before.
     pub fn read(&mut self, t: usize, forces: &mut OfTile) {
         let (level, springs) = (self.level, self.springs);
         if self.band.variations.is_some() {
@@ -69,67 +69,50 @@ impl<'a> StressReader<'a> {
         // For consecutive tiles, the springs in between are in the ring buffer already.
         let from = band.below(displaced.start).max(self.springs_end);
         self.springs_end = displaced.end;
-        let u = &band.displacement;
-        band.upward(simd, geometry, u, scratch, from, displaced.end);
-        band.lattice_forces(simd, geometry, u, t, scratch);
-        stresses::<S, G>(simd, self.step, self.stress, band, t, scratch, forces);
-    }
-}
-
-/// Contact stress `|F_f + F_c|` (Eq. 10) or traction `|F_f|` in a tile, with friction as for one block.
-/// `forces` holds the kinetic friction of every element, and is overwritten by the result.
-#[inline(always)]
-fn stresses<S: Simd, G: Geometry>(
-    simd: S,
-    step: Step,
-    stress: Stress,
-    band: &Band,
-    t: usize,
-    scratch: &Scratch,
-    forces: &mut [[f64; LANES]],
-) {
-    let elements = band.elements(t);
-    let n = elements.len();
-    let displacements = chunks(&band.displacement, band.halo + elements.start, n);
-    let velocities = chunks(&band.velocity, elements.start, n);
-    let lattice_forces = chunks(&scratch.lattice, 0, n);
-    let interface = band
-        .interface
-        .as_ref()
-        .map(|interface| interface.of_elements(elements.clone()));
-    for (c, of_vector) in forces[..n / LANES].iter_mut().enumerate() {
-        let mut velocity = load_vec2(simd, velocities, c);
-        let mut kinetic_force = load(simd, of_vector);
-        let lattice = load_vec2(simd, lattice_forces, c);
-        let u = load_vec2(simd, displacements, c);
-        let variations = band.variations.as_ref().filter(|_| G::BLOCKS_DIFFER);
-        let mut drive = match variations {
-            Some(variations) => {
-                let first = elements.start + c * LANES;
-                let eight = |values: &Aligned| load(simd, &values[first..].as_chunks().0[0]);
-                let loads = variations.loads.as_ref().map(eight);
-                pull_of_differing(simd, step, eight(&variations.drive_springs), loads, u)
+        band.upward(simd, geometry, scratch, from, displaced.end);
+        band.lattice_forces(simd, geometry, t, scratch);
+        let n = elements.len();
+        let displacements = chunks(&band.displacement, displaced.start, n);
+        let velocities = chunks(&band.velocity, elements.start, n);
+        let lattice_forces = chunks(&scratch.lattice, 0, n);
+        let interface = band
+            .interface
+            .as_ref()
+            .map(|interface| interface.of_elements(elements.clone()));
+        for (c, of_vector) in forces[..n / LANES].iter_mut().enumerate() {
+            let mut velocity = load_vec2(simd, velocities, c);
+            let mut kinetic_force = load(simd, of_vector);
+            let lattice = load_vec2(simd, lattice_forces, c);
+            let u = load_vec2(simd, displacements, c);
+            let variations = band.variations.as_ref().filter(|_| G::BLOCKS_DIFFER);
+            let mut drive = match variations {
+                Some(variations) => {
+                    let first = elements.start + c * LANES;
+                    let eight = |values: &Aligned| load(simd, &values[first..].as_chunks().0[0]);
+                    let loads = variations.loads.as_ref().map(eight);
+                    pull_of_differing(simd, self.step, eight(&variations.drive_springs), loads, u)
+                }
+                None => pull(simd, self.step, u),
+            };
+            if let Some(interface) = &interface {
+                let [reaction, share] = interface.reaction(simd, c, u[1]);
+                drive[1] += reaction;
+                (kinetic_force, velocity[1]) = (share * kinetic_force, splat(simd, 0.0));
             }
-            None => pull(simd, step, u),
-        };
-        if let Some(interface) = &interface {
-            let [reaction, share] = interface.reaction(simd, c, u[1]);
-            drive[1] += reaction;
-            (kinetic_force, velocity[1]) = (share * kinetic_force, splat(simd, 0.0));
+            let [x, y] = add(drive, lattice);
+            let mut force = [-x, -y];
+            let stuck = is_zero(simd, velocity);
+            if bits(simd, stuck) != u8::MAX {
+                let per_velocity = kinetic_force / square(velocity).sqrt();
+                force = select(stuck, force, scale(-per_velocity, velocity));
+            }
+            if interface.is_some() {
+                force[1] = splat(simd, 0.0);
+            }
+            if self.stress == Stress::Contact {
+                force = add(force, lattice);
+            }
+            square(force).sqrt().store_array(of_vector);
         }
-        let [x, y] = add(drive, lattice);
-        let mut force = [-x, -y];
-        let stuck = is_zero(simd, velocity);
-        if bits(simd, stuck) != u8::MAX {
-            let per_velocity = kinetic_force / square(velocity).sqrt();
-            force = select(stuck, force, scale(-per_velocity, velocity));
-        }
-        if interface.is_some() {
-            force[1] = splat(simd, 0.0);
-        }
-        if stress == Stress::Contact {
-            force = add(force, lattice);
-        }
-        square(force).sqrt().store_array(of_vector);
     }
 }

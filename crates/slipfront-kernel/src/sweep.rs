@@ -6,7 +6,6 @@ use super::band::Band;
 use super::quanta::Quanta;
 use super::springs::{Differing, Series, SquareRoot};
 use super::step::Step;
-use crate::lattice::SpringStiffness;
 
 /// Formula for spring forces in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,15 +47,15 @@ pub fn sweep(
     level: Level,
     band: &mut Band,
     springs: Springs,
-    (epsilon, stiffness): (f64, SpringStiffness),
+    epsilon: f64,
     step: Step,
     quanta: &Quanta,
     energies: bool,
 ) {
     let (short, long, root) = (
-        Series::<3> { epsilon, stiffness },
-        Series::<7> { epsilon, stiffness },
-        SquareRoot { epsilon, stiffness },
+        Series::<3> { epsilon },
+        Series::<7> { epsilon },
+        SquareRoot { epsilon },
     );
     match (springs, band.variations.is_some()) {
         (Springs::ShortSeries, false) => {

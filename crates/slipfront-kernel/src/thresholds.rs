@@ -37,27 +37,58 @@ pub struct FallWithSpeed {
     pub adhesion: f64,
 }
 
-/// Strength that falls linearly over a slip.
-#[derive(Clone, Copy, Debug)]
+/// Strength that falls linearly: after a slip `s` since it last had its full strength, a block bears
+///
+/// ```text
+/// f(s) = K + (S - K) max(0, 1 - s/D_c)
+/// ```
+///
+/// while it slides or is about to, with its full static and kinetic thresholds `S` and `K`. Where `K >= S`
+/// strength does not fall.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallWithSlip {
-    /// Slip `D_c` over which strength falls.
+    /// Slip `D_c` over which strength falls, in units of `P mu_s l^2/(E h)`.
     pub length: f64,
-    /// Time t* after which a stuck block has its full strength again; none if no block heals.
+    /// Time t* after which a stuck block has its full strength again; if there is none, no block heals.
     pub healing_time: Option<f64>,
 }
 
 impl FallWithSlip {
-    /// Share of the fall that is left after a slip, `max(0, 1 - s/D_c)`.
+    /// Share of the fall of strength that is left after a slip, `max(0, 1 - s/D_c)`.
+    ///
+    /// ```
+    /// let law = slipfront_kernel::FallWithSlip { length: 0.5, healing_time: None };
+    /// assert_eq!([0.0, 0.25, 0.5, 2.0].map(|slip| law.share_left(slip)), [1.0, 0.5, 0.0, 0.0]);
+    /// ```
     #[inline(always)]
     pub fn share_left(&self, slip: f64) -> f64 {
         (1.0 - slip * (1.0 / self.length)).max(0.0)
     }
 
-    /// Share of the work of the fall that is done after a slip, `1 - max(0, 1 - s/D_c)^2`.
+    /// Share of the largest weakening energy, `(S - K) D_c/2`, that has been lost after a slip:
+    ///
+    /// ```text
+    /// 1 - max(0, 1 - s/D_c)^2
+    /// ```
+    ///
+    /// ```
+    /// let law = slipfront_kernel::FallWithSlip { length: 0.5, healing_time: None };
+    /// assert_eq!([0.0, 0.25, 0.5, 2.0].map(|slip| law.share_lost(slip)), [0.0, 0.75, 1.0, 1.0]);
+    /// ```
     #[inline(always)]
     pub fn share_lost(&self, slip: f64) -> f64 {
         let left = self.share_left(slip);
         1.0 - left * left
+    }
+
+    /// Energy that weakening has dissipated in a block with a fall of strength of `drop = max(S - K, 0)`, the
+    /// integral of `f - K` over its slip:
+    ///
+    /// ```text
+    /// Phi = (S - K) D_c/2 (share lost by the present slip + shares lost before it healed)
+    /// ```
+    pub fn energy(&self, drop: f64, slip: f64, lost_before: f64) -> f64 {
+        0.5 * drop * self.length * (lost_before + self.share_lost(slip))
     }
 
     /// Whether a stuck block that last moved at `moved_at` has its full strength again at `time_star`.

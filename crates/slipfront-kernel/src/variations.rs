@@ -11,7 +11,6 @@ use std::ops::Range;
 use super::aligned::Aligned;
 use super::layout::Layout;
 use super::vector::Chunks;
-use crate::lattice::SpringStiffness;
 use crate::properties::Properties;
 
 /// Properties of the elements of a band.
@@ -66,8 +65,6 @@ pub struct LargestFactors {
     pub inverse_mass: f64,
     /// Largest dead load relative to that of [`Step`](super::step::Step).
     pub load: f64,
-    /// Springs between the blocks.
-    pub springs: SpringStiffness,
     /// Stiffness of the foundation under an interface; 0 without one.
     pub foundation: f64,
 }
@@ -91,14 +88,14 @@ impl Variations {
                 springs[k] = factor;
             }
         }
-        let blocks = properties.blocks;
         for k in 0..len {
             if let Some(b) = layout.block(elements.start + k) {
-                variations.drive_springs[k] = blocks.drive_spring(b);
-                variations.mass[k] = blocks.mass(b);
-                variations.inverse_mass[k] = 1.0 / blocks.mass(b);
+                let block = properties.blocks.block(b);
+                variations.drive_springs[k] = block.drive_spring;
+                variations.mass[k] = block.mass;
+                variations.inverse_mass[k] = 1.0 / block.mass;
                 if let Some(loads) = &mut variations.loads {
-                    loads[k] = blocks.relative_dead_load(b);
+                    loads[k] = block.relative_dead_load;
                 }
             }
         }
@@ -109,7 +106,7 @@ impl Variations {
 impl Variations {
     /// Variations of some elements, counted from the first of the band.
     #[inline(always)]
-    pub(crate) fn of(&self, elements: Range<usize>) -> Variation<'_> {
+    pub(crate) fn slice(&self, elements: Range<usize>) -> Variation<'_> {
         let loads = self.loads.as_ref();
         Variation {
             loads: loads.map_or(&[], |loads| loads[elements.clone()].as_chunks().0),

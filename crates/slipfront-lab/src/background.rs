@@ -75,7 +75,7 @@ struct ThreadWorker {
 }
 
 impl Worker for ThreadWorker {
-    fn tell(&self, event: Event) {
+    fn send(&self, event: Event) {
         // After the end of the session nobody receives events.
         let _ = self.tells.send(event);
     }

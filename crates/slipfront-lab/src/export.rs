@@ -17,7 +17,7 @@ use slipfront_base::text::display_path;
 use slipfront_base::unfinished::{UnfinishedFolder, is_unfinished};
 use slipfront_session::{Document, Presets};
 
-use crate::opening::{Start, StartSource};
+use crate::start::Start;
 use crate::{assets, presets};
 
 /// File name of the session as WebAssembly, next to the program and in an exported folder.
@@ -25,6 +25,9 @@ pub const MODULE: &str = "slipfront.wasm";
 
 /// File name of the second module, in the same folder, which runs the jobs outside a session.
 const WORK: &str = "slipfront-work.wasm";
+
+/// Both modules.
+const MODULES: [&str; 2] = [MODULE, WORK];
 
 /// The file with the presets and the case with which the session begins.
 const BEGINNING: &str = "start.json";
@@ -119,13 +122,8 @@ struct Beginning<'a> {
     opening: &'a Document,
 }
 
-/// Everything that makes up a page without a server.
-struct Parts {
-    /// Files of the page by name.
-    files: BTreeMap<String, Vec<u8>>,
-    /// WebAssembly modules by name.
-    modules: BTreeMap<&'static str, Vec<u8>>,
-}
+/// Everything that makes up a page without a server: files and modules of WebAssembly, by name.
+struct Parts(BTreeMap<String, Vec<u8>>);
 
 /// Finds the module of the session in the first folder that has it. The module of the jobs is in the same
 /// folder.
@@ -154,18 +152,16 @@ fn read_module(path: PathBuf) -> Result<Vec<u8>, ExportError> {
 impl Parts {
     fn new(start: &Start, module: &Path, notices: &str) -> Result<Self, ExportError> {
         let presets = presets::all();
-        let opening = match &start.0 {
-            StartSource::Preset => presets::opening(&presets).map_err(ExportError::Case)?,
-            StartSource::Case(document) => Document::clone(document),
-            StartSource::Folder(_) => return Err(ExportError::Folder),
+        let opening = match start {
+            Start::Preset => presets::opening(&presets).map_err(ExportError::Case)?,
+            Start::Case(document) => Document::clone(document),
+            Start::Folder(_) => return Err(ExportError::Folder),
         };
-        let modules = BTreeMap::from([
-            (MODULE, read_module(module.to_owned())?),
-            (WORK, read_module(module.with_file_name(WORK))?),
-        ]);
         let mut files: BTreeMap<String, Vec<u8>> = assets::all()
             .map(|(name, contents)| (name, contents.to_vec()))
             .collect();
+        files.insert(MODULE.to_owned(), read_module(module.to_owned())?);
+        files.insert(WORK.to_owned(), read_module(module.with_file_name(WORK))?);
         let beginning = Beginning {
             presets: &presets,
             opening: &opening,
@@ -174,12 +170,12 @@ impl Parts {
             serde_json::to_vec(&beginning).map_err(|error| ExportError::Case(error.to_string()))?;
         files.insert(BEGINNING.to_owned(), beginning);
         files.insert(NOTICES.to_owned(), notices.as_bytes().to_vec());
-        Ok(Self { files, modules })
+        Ok(Self(files))
     }
 
     /// A file of the page as text.
     fn text(&self, name: &str) -> String {
-        let contents = self.files.get(name).map(Vec::as_slice).unwrap_or_default();
+        let contents = self.0.get(name).map(Vec::as_slice).unwrap_or_default();
         String::from_utf8_lossy(contents).into_owned()
     }
 
@@ -213,22 +209,19 @@ pub fn export_folder(start: &Start, module: &Path, notices: &str, out: &Path) ->
     if out.exists() && !out.join(MODULE).is_file() && !is_free() {
         return Err(ExportError::OtherThings(out.to_owned()));
     }
-    let mut parts = Parts::new(start, module, notices)?;
+    let parts = Parts::new(start, module, notices)?;
     let page = parts.page(
         POLICY_OF_FOLDER,
         "<link rel=\"manifest\" href=\"manifest.webmanifest\">\n",
     );
-    parts.files.insert("index.html".to_owned(), page.into_bytes());
-    let modules = std::mem::take(&mut parts.modules).into_iter();
-    parts
-        .files
-        .extend(modules.map(|(name, contents)| (name.to_owned(), contents)));
-    parts
-        .files
-        .insert("manifest.webmanifest".to_owned(), MANIFEST.as_bytes().to_vec());
-    let service_worker = service_worker(&parts.files).into_bytes();
-    parts.files.insert("service_worker.js".to_owned(), service_worker);
-    place(&parts.files, out).map_err(failed)
+    let Parts(mut files) = parts;
+    files.insert("index.html".to_owned(), page.into_bytes());
+    files.insert("manifest.webmanifest".to_owned(), MANIFEST.into());
+    files.insert(
+        "service_worker.js".to_owned(),
+        service_worker(&files).into_bytes(),
+    );
+    place(&files, out).map_err(failed)
 }
 
 /// Writes files to a hidden folder, which gets its name when it is whole. In a folder that is there already,
@@ -339,15 +332,14 @@ fn compressed(module: &[u8]) -> String {
 fn files_within(parts: &Parts) -> String {
     let is_asked_for =
         |name: &str| name != "index.html" && !name.ends_with(".css") && !name.ends_with(".LICENSE");
-    let mut files: BTreeMap<&str, String> = parts
-        .files
-        .keys()
-        .filter(|name| is_asked_for(name))
-        .map(|name| (name.as_str(), parts.text(name)))
+    let contents = |name: &str, contents: &[u8]| match MODULES.contains(&name) {
+        true => compressed(contents),
+        false => String::from_utf8_lossy(contents).into_owned(),
+    };
+    let files = parts.0.iter().filter(|(name, _)| is_asked_for(name));
+    let files: BTreeMap<&str, String> = files
+        .map(|(name, bytes)| (name.as_str(), contents(name, bytes)))
         .collect();
-    for (name, contents) in &parts.modules {
-        files.insert(name, compressed(contents));
-    }
     // Texts: serialisation cannot fail. Sequences that would end the script are escaped.
     serde_json::to_string(&files)
         .unwrap_or_default()

@@ -25,14 +25,14 @@ pub(crate) fn document(path: &Path, name: &str, allowed: &[PathBuf]) -> Result<D
 pub(crate) struct ReadableFolders<'a> {
     folder: &'a Path,
     /// The owner of the folder in messages, such as `the case`.
-    of: &'static str,
+    owner: &'static str,
     /// The folders without symbolic links.
     roots: Vec<PathBuf>,
 }
 
 impl<'a> ReadableFolders<'a> {
-    /// The folder of `of`, an owner such as `the case`, together with the allowed folders.
-    pub(crate) fn new(folder: &'a Path, of: &'static str, allowed: &[PathBuf]) -> Result<Self, String> {
+    /// The folder of `owner`, such as `the case`, together with the allowed folders.
+    pub(crate) fn new(folder: &'a Path, owner: &'static str, allowed: &[PathBuf]) -> Result<Self, String> {
         let folder = if folder.as_os_str().is_empty() {
             Path::new(".")
         } else {
@@ -45,7 +45,7 @@ impl<'a> ReadableFolders<'a> {
         let roots = [folder].into_iter().chain(allowed.iter().map(PathBuf::as_path));
         Ok(Self {
             folder,
-            of,
+            owner,
             roots: roots.map(resolved).collect::<Result<_, _>>()?,
         })
     }
@@ -65,7 +65,7 @@ impl<'a> ReadableFolders<'a> {
             "it lies in {}, outside of the folder of {}: to have it read, and made part of links and exports, start \
              `slipfront lab` with --allow-files {}",
             display_path(at),
-            self.of,
+            self.owner,
             shell_path(at)
         ))
     }

@@ -7,9 +7,9 @@ use std::sync::mpsc::Sender;
 use slipfront_session::{Document, Host, Job, OpenedCase, Presets, Task};
 
 use crate::background::BackgroundTask;
-use crate::opening::{Start, StartSource};
 use crate::outbox::Outbox;
 use crate::saves::Saves;
+use crate::start::Start;
 use crate::{presets, replay};
 
 /// Start, folders, threads, presets and running saves, shared by all sessions.
@@ -64,10 +64,10 @@ impl Host for PageHost {
     }
 
     fn opening(&self) -> Result<OpenedCase, String> {
-        match &self.setting.start.0 {
-            StartSource::Preset => presets::opening(&self.setting.presets).map(OpenedCase::from),
-            StartSource::Case(document) => Ok(Document::clone(document).into()),
-            StartSource::Folder(path) => replay::read(path, &self.setting.allow_files),
+        match &self.setting.start {
+            Start::Preset => presets::opening(&self.setting.presets).map(OpenedCase::from),
+            Start::Case(document) => Ok(Document::clone(document).into()),
+            Start::Folder(path) => replay::read(path, &self.setting.allow_files),
         }
     }
 

@@ -9,10 +9,10 @@ use std::time::{Duration, Instant};
 use slipfront_session::{Message, Session};
 
 use crate::host::{PageHost, Setting};
-use crate::opening::Start;
 use crate::outbox::Outbox;
 use crate::presets;
 use crate::saves::Saves;
+use crate::start::Start;
 
 /// Longest time that a session works on a message.
 const MESSAGE_TIME: Duration = Duration::from_millis(20);

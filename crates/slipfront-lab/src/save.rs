@@ -16,7 +16,7 @@ use slipfront_run::pictures;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
-use slipfront_session::{Document, is_plain_name};
+use slipfront_session::{Document, is_plain_name, sentence};
 
 /// Time between two progress reports.
 const REPORT_INTERVAL: Duration = Duration::from_millis(200);
@@ -67,10 +67,6 @@ pub(crate) fn save(
     stop: &AtomicBool,
     report_progress: impl Fn(f64),
 ) -> Result<bool, String> {
-    /// Converts any error to its message.
-    fn sentence(error: impl std::fmt::Display) -> String {
-        error.to_string()
-    }
     let started = clock::now();
     let case = match document.case(&mut |_| !stop.load(Ordering::Relaxed)) {
         Err(CaseError::Stopped) => return Ok(false),

@@ -59,10 +59,10 @@ mod tests {
 
     use super::*;
     use crate::host::{PageHost, Setting};
-    use crate::opening::Start;
     use crate::outbox::Outgoing;
     use crate::presets;
     use crate::saves::Saves;
+    use crate::start::Start;
 
     /// A host with a defect: it panics when asked for a certain preset.
     struct DefectiveHost(PageHost);

@@ -14,9 +14,9 @@ use tokio::sync::{Semaphore, watch};
 use tokio::time::timeout;
 
 use crate::host::Setting;
-use crate::opening::Start;
 use crate::saves::Saves;
 use crate::socket::{MAX_PAGES, Shared};
+use crate::start::Start;
 use crate::start_page::{PrivateFile, StartPage};
 use crate::token::Token;
 use crate::{assets, connections, guard, presets, socket};

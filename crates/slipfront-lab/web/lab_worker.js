@@ -5,7 +5,7 @@
 
 /** @import { Asked, Begin, BytesSaying, Module, TextSaying } from '../types/worker' */
 
-/** Names of the messages of the module, by their numbers: `Saying` in imports.rs of slipfront-wasm. */
+/** Names of the messages of the module, by their numbers: `MessageKind` in imports.rs of slipfront-wasm. */
 const SAYINGS = ['reply', 'picture', 'kymograph', 'job', 'end', 'event', 'save', 'stop_saving', 'share', 'archive', 'bits', 'refusal', 'defect'];
 /** Sayings that are bytes; all others are texts. */
 const BYTES = ['picture', 'kymograph', 'archive'];

@@ -105,7 +105,7 @@ pub fn sources(folder: &Path, records: &RunJournal) -> Result<Vec<ManifestFile>,
     for entry in std::fs::read_dir(&path).map_err(&unreadable)? {
         let name = entry.map_err(&unreadable)?.file_name();
         let name = format!("{FIGURE_CACHE}/{}", name.to_string_lossy());
-        sources.push(ManifestFile::of(folder, &name).map_err(&unreadable)?);
+        sources.push(ManifestFile::read(folder, &name).map_err(&unreadable)?);
     }
     sources.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(sources)
@@ -121,7 +121,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let cache = FigureCache::open(folder.path(), true).unwrap();
         let mut data = FigureData::default();
-        data.number("fig99.one", MeasuredNumber::of(&[1.0, 2.0]));
+        data.number("fig99.one", MeasuredNumber::from_values(&[1.0, 2.0]));
         data.value("fig99.none", f64::INFINITY);
         cache.save("fig99", StepRule::Auto, &data).unwrap();
         assert_eq!(cache.load("fig99", StepRule::Auto).unwrap().numbers, data.numbers);

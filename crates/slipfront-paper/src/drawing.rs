@@ -6,8 +6,8 @@ use crate::error::PaperError;
 use crate::number::MeasuredNumber;
 
 use slipfront_plot::{
-    BarChart, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, Picture, PictureError, PictureSize, Response,
-    Responses, Shape, Sketch,
+    BarChart, Estimate, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, Picture, PictureError, PictureSize,
+    Response, Responses, Shape, Sketch, Stroke, StrokeStyle,
 };
 
 /// The contents of a picture.
@@ -71,9 +71,8 @@ impl Drawing {
             Self::Responses(responses) => {
                 table.write_record(["curve", "x", "mean", "low", "high"])?;
                 for curve in &responses.curves {
-                    for (k, x) in curve.x.iter().enumerate() {
-                        let [mean, low, high] = [curve.mean[k], curve.low[k], curve.high[k]].map(known);
-                        table.serialize((&curve.label, x, mean, low, high))?;
+                    for (x, value) in &curve.points {
+                        table.serialize((&curve.label, x, cells(value)))?;
                     }
                 }
             }
@@ -81,8 +80,7 @@ impl Drawing {
                 table.write_record(["group", "bar", "mean", "low", "high"])?;
                 for group in &chart.groups {
                     for bar in &group.bars {
-                        let [mean, low, high] = [bar.mean, bar.low, bar.high].map(known);
-                        table.serialize((&group.label, &bar.label, mean, low, high))?;
+                        table.serialize((&group.label, &bar.label, cells(&bar.value)))?;
                     }
                 }
             }
@@ -113,20 +111,40 @@ pub(super) fn finish(table: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, PaperError>
     bytes.map_err(|error| csv::Error::from(error.into_error()).into())
 }
 
-/// An empty cell for NaN.
-fn known(value: f64) -> Option<f64> {
+/// A value for a cell of a table; none, for an empty cell, instead of NaN.
+pub(super) fn known(value: f64) -> Option<f64> {
     (!value.is_nan()).then_some(value)
 }
 
+/// The mean and the ends of its interval, as cells of a table.
+fn cells(value: &Estimate) -> [Option<f64>; 3] {
+    [value.mean, value.low, value.high].map(known)
+}
+
+/// A number and its interval as they are drawn.
+pub(super) fn estimate(number: &MeasuredNumber) -> Estimate {
+    let [mean, low, high] = number.ends();
+    Estimate::between(low, mean, high)
+}
+
+/// A stroke of a sketch through these points.
+pub(super) fn stroke(style: StrokeStyle, points: &[[f64; 2]]) -> Stroke {
+    Stroke {
+        style,
+        points: points.to_vec(),
+    }
+}
+
+/// Names of a sketch, each at its place.
+pub(super) fn names<const N: usize>(names: [(&str, [f64; 2]); N]) -> [(String, [f64; 2]); N] {
+    names.map(|(name, at)| (name.to_owned(), at))
+}
+
 pub(super) fn measured(label: &str, x: &[f64], numbers: &[MeasuredNumber]) -> Response {
-    let column = |which: usize| numbers.iter().map(|number| number.ends()[which]).collect();
     Response {
         label: label.to_owned(),
-        x: x.to_vec(),
-        mean: column(0),
-        low: column(1),
-        high: column(2),
-        ..Response::default()
+        points: x.iter().copied().zip(numbers.iter().map(estimate)).collect(),
+        line: false,
     }
 }
 

@@ -6,9 +6,7 @@ use thiserror::Error;
 use slipfront_case::case_file::CaseError;
 use slipfront_plot::PictureError;
 use slipfront_run::folder_error::FolderError;
-use slipfront_run::verify::VerifyError;
 use slipfront_study::StudyError;
-use slipfront_study::project_folder::VerifyStudyError;
 
 /// Reason why the figures could not be run or the report could not be written.
 #[derive(Debug, Error)]
@@ -36,10 +34,6 @@ pub enum PaperError {
     Table(#[from] csv::Error),
     #[error(transparent)]
     Folder(#[from] FolderError),
-    #[error(transparent)]
-    Verify(#[from] VerifyError),
-    #[error(transparent)]
-    VerifyStudy(#[from] VerifyStudyError),
 }
 
 impl PaperError {

@@ -59,7 +59,7 @@ impl FigureData {
 
     /// Adds the mean of values, one for each surface.
     pub(super) fn values(&mut self, name: &str, values: &[f64]) {
-        self.number(name, MeasuredNumber::of(values));
+        self.number(name, MeasuredNumber::from_values(values));
     }
 
     pub(super) fn panel(&mut self, name: &str, caption: &str, drawing: Drawing) {

@@ -26,8 +26,8 @@ impl MeasuredNumber {
     }
 
     /// The mean over random surfaces; NaN if there are no values.
-    pub fn of(values: &[f64]) -> Self {
-        match Sample::of(values, CONFIDENCE) {
+    pub fn from_values(values: &[f64]) -> Self {
+        match Sample::from_values(values, CONFIDENCE) {
             Some(sample) => Self {
                 value: sample.mean,
                 interval: sample.interval(),

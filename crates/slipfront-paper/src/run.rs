@@ -15,7 +15,7 @@ use slipfront_run::pictures::friction::marked_curve;
 use slipfront_run::running::RunData;
 
 /// A case that ends at the last of these times, and records its fields only at these times.
-pub(super) fn seen_at(mut case: Case, times_star: &[f64]) -> Case {
+pub(super) fn recorded_at(mut case: Case, times_star: &[f64]) -> Case {
     let step = |time: &f64| (time / case.time_plan.dt_star).round() as u64;
     let mut steps: Vec<u64> = times_star.iter().map(step).collect();
     steps.dedup();
@@ -72,13 +72,15 @@ impl FigureRun {
         let mut frames = self.record.frames.iter();
         let found = frames.find(|(letters, _)| letters.contains(letter));
         let frame = found.map(|(_, frame)| frame);
-        frame.ok_or_else(|| self.lacks(&format!("instant {letter}")))
+        frame.ok_or_else(|| self.missing(&format!("instant {letter}")))
     }
 
     pub(super) fn field<'f>(&self, frame: &'f Frame, field: Field) -> Result<&'f [f32], PaperError> {
         let index = self.case.output.fields.iter().position(|&name| name == field);
         let values = index.and_then(|index| frame.values.get(index));
-        values.map(Vec::as_slice).ok_or_else(|| self.lacks("such field"))
+        values
+            .map(Vec::as_slice)
+            .ok_or_else(|| self.missing("such field"))
     }
 
     /// A map of tau_c*, NaN where the slider is textured.
@@ -165,7 +167,7 @@ impl FigureRun {
 
     pub(super) fn kinetic_window(&self) -> Result<[f64; 2], PaperError> {
         let window = self.record.summary.kinetic_window_star;
-        window.ok_or_else(|| self.lacks("kinetic window"))
+        window.ok_or_else(|| self.missing("kinetic window"))
     }
 
     /// Standard deviation of mu* in the window of kinetic friction.
@@ -177,7 +179,7 @@ impl FigureRun {
     /// t* of the first slip of any block.
     pub(super) fn first_slip(&self) -> Result<f64, PaperError> {
         let time = self.record.summary.first_slip_time_star;
-        time.ok_or_else(|| self.lacks("slip"))
+        time.ok_or_else(|| self.missing("slip"))
     }
 
     /// Times of the first slip of the blocks in contact, in ascending order.
@@ -193,7 +195,7 @@ impl FigureRun {
         let contact = self.case.model.surface.n_contact() as f64;
         let index = ((share * contact).ceil() as usize).saturating_sub(1);
         let time = self.slip_times().get(index).copied();
-        time.ok_or_else(|| self.lacks(&format!("slip of {share} of all blocks")))
+        time.ok_or_else(|| self.missing(&format!("slip of {share} of all blocks")))
     }
 
     /// The block that slips first.
@@ -201,10 +203,10 @@ impl FigureRun {
         let earliest = self.first_slip()?;
         let times = &self.record.first_slip_time_star;
         let first = times.iter().position(|&time| time == earliest);
-        first.ok_or_else(|| self.lacks("slip"))
+        first.ok_or_else(|| self.missing("slip"))
     }
 
-    fn lacks(&self, what: &str) -> PaperError {
+    fn missing(&self, what: &str) -> PaperError {
         PaperError::Lacks {
             file: self.case.name.clone(),
             what: what.to_owned(),

@@ -10,7 +10,7 @@ use slipfront::StopReason;
 
 use crate::embedded_cases::FILES;
 use crate::error::PaperError;
-use crate::run::{FigureRun, seen_at};
+use crate::run::{FigureRun, recorded_at};
 use crate::step_rule::StepRule;
 use crate::sweep::ParameterSweep;
 use slipfront_case::case::Case;
@@ -78,7 +78,7 @@ impl FigureRunner<'_> {
         shares: &[f64],
     ) -> Result<FigureRun, PaperError> {
         let times = shares.iter().map(|&share| run.time_of_share(share));
-        let mut again = self.run_one(seen_at(case, &times.collect::<Result<Vec<_>, _>>()?))?;
+        let mut again = self.run_one(recorded_at(case, &times.collect::<Result<Vec<_>, _>>()?))?;
         again.record.contact_stress_max = run.record.contact_stress_max;
         Ok(again)
     }
@@ -128,7 +128,7 @@ impl FigureRunner<'_> {
             id: plan.plan.identity(key),
             wall_time_s: run.wall_time_s,
             // A study has no instants A-F.
-            outcome: Outcome::of(Summary {
+            outcome: Outcome::from_summary(Summary {
                 instants: Vec::new(),
                 ..run.record.summary.clone()
             }),

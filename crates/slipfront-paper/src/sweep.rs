@@ -43,7 +43,7 @@ impl ParameterSweep {
 
     /// Mean and interval of a quantity over the surfaces of a point.
     pub(super) fn number(&self, levels: &[usize], quantity: &str) -> MeasuredNumber {
-        MeasuredNumber::of(&self.values(levels, quantity))
+        MeasuredNumber::from_values(&self.values(levels, quantity))
     }
 
     /// Mean and interval of a quantity along the first axis, at these levels of the other axes.

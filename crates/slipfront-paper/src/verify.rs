@@ -10,9 +10,8 @@ use slipfront_base::unfinished::TemporaryFolder;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_run::names::FIGURE_CACHE;
-use slipfront_run::verify::{Verdict, VerifyError, differences};
-use slipfront_study::project_folder::{Checksums, ResultFiles};
-use slipfront_study::project_folder::{Extent, verify_complete};
+use slipfront_run::verify::{FolderCheck, VerifyError, differences};
+use slipfront_study::project_folder::{Checksums, Extent, ResultFiles, verify_complete};
 use slipfront_study::{PAPER, RunJournal, StudyError};
 
 use crate::cache::MAX_BYTES;
@@ -25,21 +24,22 @@ use crate::report::write;
 ///
 /// # Errors
 /// When the folder cannot be read, and after a stop.
-pub fn verify(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<Verdict, PaperError> {
-    let mut verdict = verify_complete(folder, &PAPER, &[FIGURE_CACHE], stop)?;
-    if extent == Extent::Derived && verdict.differences.is_empty() {
-        derive(folder, &mut verdict, stop)?;
+pub fn verify(folder: &Path, extent: Extent, stop: &AtomicBool) -> Result<FolderCheck, PaperError> {
+    let mut check = verify_complete(folder, &PAPER, &[FIGURE_CACHE], stop)?;
+    if extent == Extent::Derived && check.differences.is_empty() {
+        derive(folder, &mut check, stop)?;
     }
     if stop.load(Ordering::Relaxed) {
         return Err(StudyError::Interrupted.into());
     }
-    Ok(verdict)
+    Ok(check)
 }
 
 /// Makes pictures and tables again from the data of the figures, of the full or the reduced paper, and
 /// compares the folder with them.
-fn derive(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(), PaperError> {
-    let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
+fn derive(folder: &Path, check: &mut FolderCheck, stop: &AtomicBool) -> Result<(), PaperError> {
+    let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary);
+    let temporary = temporary.map_err(StudyError::from)?;
     let names = |files: &[ManifestFile]| files.iter().map(|file| file.name.clone()).collect::<Vec<_>>();
     let files_of = |folder: &Path| Ok::<_, PaperError>(Checksums::read(folder)?.unwrap_or_default().files);
     let listed = names(&files_of(folder)?);
@@ -57,12 +57,12 @@ fn derive(folder: &Path, verdict: &mut Verdict, stop: &AtomicBool) -> Result<(),
         write(&paper, &ResultFiles::new(&again, "paper", false), Vec::new())?;
         let files = files_of(&again)?;
         if names(&files) == listed {
-            verdict.differences = differences(&files, folder, "follow from the data of the figures", stop);
-            verdict.what += ", and as the data of the figures give them, which are not derived again";
+            check.differences = differences(&files, folder, "follow from the data of the figures", stop);
+            check.what += ", and as the data of the figures give them, which are not derived again";
             return Ok(());
         }
     }
-    verdict.not_derived = Some(format!(
+    check.not_derived = Some(format!(
         "the pictures and tables in {} were not recomputed: their data in {FIGURE_CACHE}/ are incomplete or come from another \
          program",
         folder.display()

@@ -5,13 +5,14 @@ use serde::{Deserialize, Serialize};
 use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
 use crate::category_axis::{CategoryAxis, MIN_SLOT};
+use crate::estimate::Estimate;
 use crate::frame::{left_room, left_side, upright_room};
 use crate::geometry::Area;
 use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
 use crate::picture::Picture;
 use crate::picture_error::PictureError;
-use crate::series::{cross, error_bar, interval};
+use crate::series::{cross, error_bar};
 use crate::size::PictureSize;
 use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, bar_colour};
 use crate::text::Text;
@@ -51,19 +52,12 @@ pub struct BarGroup {
 }
 
 /// One bar.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bar {
     /// Name of the bar, unique within its group; bars with the same name have the same colour.
     pub label: String,
-    /// Height of the bar; NaN leaves its slot empty.
-    pub mean: f64,
-    /// The lower end of the confidence interval; NaN where there is none.
-    pub low: f64,
-    /// The upper end of the confidence interval; NaN where there is none.
-    pub high: f64,
-    /// Whether the bar is marked by a cross.
-    #[serde(default)]
-    pub crossed: bool,
+    /// Height of the bar; without a mean its slot stays empty.
+    pub value: Estimate,
 }
 
 /// Draws bars from zero with error bars, usually as wide as a journal's column (85 mm), or wider if there are
@@ -76,7 +70,7 @@ pub struct Bar {
 ///
 /// No bar, or a size that leaves no room for the bars.
 pub fn bars(chart: &BarChart, size: PictureSize) -> Result<Picture, PictureError> {
-    let places = Places::of(chart);
+    let places = Places::new(chart);
     if places.bars.is_empty() {
         return Err(PictureError::Nothing("bar"));
     }
@@ -90,15 +84,11 @@ pub fn bars(chart: &BarChart, size: PictureSize) -> Result<Picture, PictureError
         Some(_) => size.wide_enough(COLUMN_WIDTH, least)?,
     };
     let width = (whole - left - MARGIN).round();
-    let legend_names: Vec<_> = places
-        .legend
-        .iter()
-        .map(|&name| (name, LegendSample::Patch))
-        .collect();
-    let legend = Legend::of(&chart.legend_title, &legend_names, left, left + width);
+    let patches = places.legend.iter().map(|&name| (name, LegendSample::Patch));
+    let legend = Legend::new(&chart.legend_title, patches, left, left + width);
     let above = MARGIN + legend.height;
-    let names = CategoryAxis::of(&places.names, &chart.x_title, width);
-    let note = Note::of(&chart.note, left + 0.5 * width, whole);
+    let names = CategoryAxis::new(&places.names, &chart.x_title, width);
+    let note = Note::new(&chart.note, left + 0.5 * width, whole);
     let height = size.panel(HEIGHT, above + names.height + note.height, 1)?;
     let area = Area::new(left, above, width, height);
     let y = y.placed(area.bottom(), area.y);
@@ -123,27 +113,24 @@ pub fn bars(chart: &BarChart, size: PictureSize) -> Result<Picture, PictureError
 fn draw_bar(
     canvas: &mut Canvas,
     y: &DrawnAxis,
-    PlacedBar { bar, colour, .. }: &PlacedBar,
+    &PlacedBar { bar, colour, .. }: &PlacedBar,
     middle: f64,
     width: f64,
 ) {
     /// Distance from the foot of a bar to the cross that marks it.
     const LIFT: f64 = 14.0;
-    if !drawable(bar.mean) {
-        if bar.crossed {
-            cross(canvas, (middle, y.at(0.0) - LIFT));
-        }
-        return;
+    let foot = y.at(0.0);
+    if drawable(bar.value.mean) {
+        let head = y.at(bar.value.mean);
+        // Bars of a group do not touch.
+        let left = middle - 0.5 * width + 1.0;
+        let area = Area::new(left, foot.min(head), width - 2.0, (foot - head).abs());
+        canvas.fill(area, colour, OPACITY_BAR);
     }
-    let (foot, head) = (y.at(0.0), y.at(bar.mean));
-    // Bars of a group do not touch.
-    let left = middle - 0.5 * width + 1.0;
-    let area = Area::new(left, foot.min(head), width - 2.0, (foot - head).abs());
-    canvas.fill(area, *colour, OPACITY_BAR);
-    if let Some((low, high)) = interval(bar.mean, bar.low, bar.high) {
+    if let Some([low, high]) = bar.value.interval() {
         error_bar(canvas, middle, y.at(low), y.at(high), BLACK);
     }
-    if bar.crossed {
+    if bar.value.crossed {
         cross(canvas, (middle, foot - LIFT));
     }
 }
@@ -151,8 +138,9 @@ fn draw_bar(
 /// The y axis from zero, with all bars and error bars.
 fn value_axis(bars: &[PlacedBar]) -> DrawnAxis {
     let extent = |PlacedBar { bar, .. }: &PlacedBar| {
-        let (low, high) = interval(bar.mean, bar.low, bar.high).unwrap_or((bar.mean, bar.mean));
-        [0.0, bar.mean, low, high]
+        let mean = bar.value.mean;
+        let [low, high] = bar.value.interval().unwrap_or([mean, mean]);
+        [0.0, mean, low, high]
     };
     let values: Vec<f64> = bars.iter().flat_map(extent).collect();
     let whole = DrawnAxis::around(&values, false, 0.06);
@@ -182,7 +170,7 @@ struct PlacedBar<'a> {
 }
 
 impl<'a> Places<'a> {
-    fn of(chart: &'a BarChart) -> Self {
+    fn new(chart: &'a BarChart) -> Self {
         if let [group] = &chart.groups[..] {
             let placed = |(name, bar)| PlacedBar {
                 bar,
@@ -237,10 +225,7 @@ mod tests {
     fn bar(label: &str, mean: f64) -> Bar {
         Bar {
             label: label.to_string(),
-            mean,
-            low: mean - 1.0,
-            high: mean + 1.0,
-            crossed: false,
+            value: Estimate::between(mean - 1.0, mean, mean + 1.0),
         }
     }
 
@@ -259,7 +244,7 @@ mod tests {
 
     fn limits(means: &[f64]) -> (f64, f64) {
         let chart = chart(&[("", &means.iter().map(|&mean| bar("", mean)).collect::<Vec<_>>())]);
-        let y = value_axis(&Places::of(&chart).bars);
+        let y = value_axis(&Places::new(&chart).bars);
         (y.lo, y.hi)
     }
 
@@ -301,7 +286,7 @@ mod tests {
             ("a", &[bar("slow", 1.0), bar("fast", 2.0)]),
             ("b", &[bar("fast", 3.0)]),
         ]);
-        let places = Places::of(&chart);
+        let places = Places::new(&chart);
         let [first, second, third] = &places.bars[..] else {
             panic!("three bars")
         };
@@ -319,10 +304,8 @@ mod tests {
                 .count()
         };
         for mean in [2.0, f64::NAN] {
-            let crossed = Bar {
-                crossed: true,
-                ..bar("a", mean)
-            };
+            let mut crossed = bar("a", mean);
+            crossed.value.crossed = true;
             assert_eq!(lines(crossed), lines(bar("a", mean)) + 2, "{mean}");
         }
     }

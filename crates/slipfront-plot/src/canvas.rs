@@ -29,38 +29,55 @@ pub(crate) struct Element {
 /// Elements that can be drawn; areas are filled. SVG, PNG and PDF are made of these alone.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Primitive {
-    /// A line through points, and back to the first one if it is closed. `dashes` has the lengths of dashes
-    /// and of the gaps after them; it is empty for a line without gaps.
-    Line {
-        points: Vec<CanvasPoint>,
-        width: f64,
-        closed: bool,
-        dashes: &'static [f64],
-    },
+    Line(Line),
     Polygon(Vec<CanvasPoint>),
     Rectangle(Area),
-    Disc {
-        centre: CanvasPoint,
-        radius: f64,
-    },
-    /// Letters on a baseline that starts at `at`, turned to read upwards or not.
-    Letters {
-        text: String,
-        size: u32,
-        at: CanvasPoint,
-        upwards: bool,
-    },
+    Disc { centre: CanvasPoint, radius: f64 },
+    Letters(Letters),
+}
+
+/// A line through points.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Line {
+    pub(crate) points: Vec<CanvasPoint>,
+    pub(crate) width: f64,
+    /// Whether the line goes back to the first point.
+    pub(crate) closed: bool,
+    /// Lengths of dashes and of the gaps after them; empty for a line without gaps.
+    pub(crate) dashes: &'static [f64],
+}
+
+/// Letters on a baseline.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Letters {
+    pub(crate) text: String,
+    pub(crate) size: u32,
+    /// Where the baseline starts.
+    pub(crate) at: CanvasPoint,
+    /// Whether the letters read upwards.
+    pub(crate) upwards: bool,
+}
+
+impl Letters {
+    /// Directions along the line of text and from it towards the tops of the letters, y downwards.
+    pub(crate) fn directions(&self) -> [[f32; 2]; 2] {
+        if self.upwards {
+            [[0.0, -1.0], [-1.0, 0.0]]
+        } else {
+            [[1.0, 0.0], [0.0, -1.0]]
+        }
+    }
 }
 
 impl Primitive {
     /// Moves the primitive to the right.
     fn shift(&mut self, by: f64) {
         match self {
-            Self::Line { points, .. } | Self::Polygon(points) => {
+            Self::Line(Line { points, .. }) | Self::Polygon(points) => {
                 points.iter_mut().for_each(|point| point.0 += by);
             }
             Self::Rectangle(area) => area.x += by,
-            Self::Disc { centre: at, .. } | Self::Letters { at, .. } => at.0 += by,
+            Self::Disc { centre: at, .. } | Self::Letters(Letters { at, .. }) => at.0 += by,
         }
     }
 }
@@ -130,24 +147,24 @@ impl Canvas {
         if closed {
             points.pop();
         }
-        let line = Primitive::Line {
+        let line = Line {
             points,
             width,
             closed,
-            dashes: &[],
+            ..Line::default()
         };
-        self.add(line, colour, 1.0);
+        self.add(Primitive::Line(line), colour, 1.0);
     }
 
     /// Adds a curve, or a part of one.
     pub(crate) fn curve(&mut self, points: Vec<CanvasPoint>, CurveStyle { colour, dashes }: CurveStyle) {
-        let line = Primitive::Line {
+        let line = Line {
             points,
             width: WIDTH_CURVE,
             closed: false,
             dashes,
         };
-        self.add(line, colour, 1.0);
+        self.add(Primitive::Line(line), colour, 1.0);
     }
 
     pub(crate) fn fill(&mut self, area: Area, colour: Rgb, opacity: f64) {
@@ -207,7 +224,7 @@ impl Canvas {
             let text = run.text.trim_start();
             let (spaces, _) = run.text.split_at(run.text.len() - text.len());
             let start = along + width(spaces, run.size);
-            let letters = Primitive::Letters {
+            let letters = Letters {
                 text: text.to_string(),
                 size: run.size,
                 at: if upwards {
@@ -218,7 +235,7 @@ impl Canvas {
                 upwards,
             };
             if !text.is_empty() {
-                self.add(letters, colour, 1.0);
+                self.add(Primitive::Letters(letters), colour, 1.0);
             }
             along += width(&run.text, run.size);
         }

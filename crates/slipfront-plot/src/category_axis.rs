@@ -29,7 +29,7 @@ pub(crate) struct CategoryAxis {
 
 impl CategoryAxis {
     /// Names in slots of equal width below a panel of this width.
-    pub(crate) fn of(names: &[&str], title: &str, width: f64) -> Self {
+    pub(crate) fn new(names: &[&str], title: &str, width: f64) -> Self {
         let room = width / names.len().max(1) as f64 - APART;
         let across = |name: &&str| Text::wrapped(name, SIZE_TEXT, room, MAX_LINES);
         let most = ((room + APART) / LINE).floor().clamp(1.0, MAX_LINES as f64) as usize;
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     fn lines(names: &[&str], width: f64) -> (bool, Vec<usize>) {
-        let axis = CategoryAxis::of(names, "", width);
+        let axis = CategoryAxis::new(names, "", width);
         (axis.upright, axis.names.iter().map(Vec::len).collect())
     }
 

@@ -35,7 +35,7 @@ impl CellMeans {
     }
 
     /// The means of a lattice from all its values at once.
-    pub(crate) fn of(nx: usize, ny: usize, values: impl Iterator<Item = f32>) -> Vec<f32> {
+    pub(crate) fn compute(nx: usize, ny: usize, values: impl Iterator<Item = f32>) -> Vec<f32> {
         let mut means = Self::new(nx, ny);
         means.add(values);
         means.finish()
@@ -99,7 +99,7 @@ mod tests {
             (2 | 3, 0 | 1) => f32::NAN,
             _ => 0.25,
         };
-        let means = CellMeans::of(nx, ny, (0..nx * ny).map(value));
+        let means = CellMeans::compute(nx, ny, (0..nx * ny).map(value));
         // 1, 10 and 11.
         assert_eq!(means[0], 22.0f32 / 3.0);
         assert!(means[1].is_nan());
@@ -113,7 +113,7 @@ mod tests {
         for blocks in [1, 2, 255, 256, 257, 300, 511, 1000] {
             let cells = blocks.min(256);
             for [nx, ny] in [[blocks, 1], [1, blocks]] {
-                let means = CellMeans::of(nx, ny, (0..blocks).map(|block| block as f32));
+                let means = CellMeans::compute(nx, ny, (0..blocks).map(|block| block as f32));
                 let of = |cell: usize| {
                     let group = cell * blocks / cells..(cell + 1) * blocks / cells;
                     let count = group.len();
@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn pieces_of_any_length_give_the_same_means() {
         let values: Vec<f32> = (0..300 * 7).map(|block| (block % 97) as f32 / 7.0).collect();
-        let whole = CellMeans::of(300, 7, values.iter().copied());
+        let whole = CellMeans::compute(300, 7, values.iter().copied());
         for length in [1, 3, 299, 300, 301, 1000] {
             let mut means = CellMeans::new(300, 7);
             values

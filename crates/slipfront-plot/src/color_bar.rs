@@ -21,13 +21,13 @@ pub(crate) struct ColourBar {
 }
 
 impl ColourBar {
-    pub(crate) fn of(name: Text, range: [f64; 2], height: f64) -> Self {
+    pub(crate) fn new(name: Text, range: [f64; 2], height: f64) -> Self {
         Self { name, range, height }
     }
 
     /// A bar with a name of the same size as other labels; the character after an underscore is a subscript.
     pub(crate) fn labelled(name: &str, range: [f64; 2], height: f64) -> Self {
-        Self::of(Text::math(name, SIZE_TEXT), range, height)
+        Self::new(Text::math(name, SIZE_TEXT), range, height)
     }
 
     fn is_named_above(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
-use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks, upright_room};
+use crate::frame::{LOWER_ROOM, left_room, numbered_sides, right_end};
 use crate::geometry::Area;
 use crate::note::Note;
 use crate::picture::Picture;
@@ -10,7 +10,6 @@ use crate::picture_error::PictureError;
 use crate::series::segments;
 use crate::size::PictureSize;
 use crate::style::{COLUMN_WIDTH, MARGIN, RADIUS_MARKER, curve_style};
-use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
 /// Usual height of a panel.
@@ -46,7 +45,7 @@ pub fn distributions(
     if distributions.is_empty() {
         return Err(PictureError::Nothing("distribution"));
     }
-    let curves: Vec<Steps> = distributions.iter().map(Steps::of).collect();
+    let curves: Vec<Steps> = distributions.iter().map(Steps::new).collect();
     let width = size.roomy_width(COLUMN_WIDTH)?;
     let left = curves
         .iter()
@@ -56,7 +55,7 @@ pub fn distributions(
         let ticks = curve.x.placed(left, right).ticks(Direction::X, MAX_STEPS);
         right_end(&ticks, left, right, width)
     });
-    let note = Note::of(note, 0.5 * (left + right), width);
+    let note = Note::new(note, 0.5 * (left + right), width);
     let count = curves.len() as f64;
     let beside = MARGIN + count * LOWER_ROOM + (count - 1.0) * GAP + note.height;
     let height = size.panel(HEIGHT, beside, curves.len())?;
@@ -80,7 +79,7 @@ struct Steps {
 }
 
 impl Steps {
-    fn of(distribution: &Distribution) -> Self {
+    fn new(distribution: &Distribution) -> Self {
         let values = distribution.values.iter().copied();
         let mut values: Vec<f64> = values.filter(|value| drawable(*value) && *value > 0.0).collect();
         values.sort_unstable_by(f64::total_cmp);
@@ -93,8 +92,8 @@ impl Steps {
         }
     }
 
-    /// The corners of the steps: abscissae and numbers.
-    fn corners(&self) -> (Vec<f64>, Vec<f64>) {
+    /// The corners of the steps: values and numbers.
+    fn corners(&self) -> Vec<(f64, f64)> {
         let n = self.values.len();
         let corner = |k: usize| {
             let (value, number) = (self.values[k], (n - k) as f64);
@@ -102,7 +101,7 @@ impl Steps {
             let before = self.values[k.saturating_sub(1)];
             [(before, number), (value, number)]
         };
-        (0..n).flat_map(corner).unzip()
+        (0..n).flat_map(corner).collect()
     }
 
     fn draw(&self, canvas: &mut Canvas, area: Area, distribution: &Distribution) {
@@ -110,15 +109,11 @@ impl Steps {
             self.x.placed(area.x, area.right()),
             self.y.placed(area.bottom(), area.y),
         );
-        let title = Text::fitted(&distribution.y_title, upright_room(area, canvas.height));
-        left_side(canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
-        short_ticks(canvas, area, Direction::Y, &y.short_ticks());
-        short_ticks(canvas, area, Direction::X, &x.short_ticks());
-        let title = Text::fitted(&distribution.x_title, area.width);
-        lower_side(canvas, area, &x.ticks(Direction::X, MAX_STEPS), &title);
-        let (xs, ys) = self.corners();
-        for segment in segments(&xs, &ys, &x, &y) {
-            if let (Some(&first), true) = (segment.first(), xs.len() == 2) {
+        let titles = [&*distribution.x_title, &*distribution.y_title];
+        numbered_sides(canvas, area, [&x, &y], titles);
+        let corners = self.corners();
+        for segment in segments(corners.iter().copied(), &x, &y) {
+            if let (Some(&first), true) = (segment.first(), corners.len() == 2) {
                 canvas.dot(first, RADIUS_MARKER, curve_style(0).colour);
             }
             canvas.curve(segment, curve_style(0));
@@ -141,8 +136,8 @@ mod tests {
 
     #[test]
     fn numbers_fall_by_one_at_every_value() {
-        let steps = Steps::of(&distribution(&[4.0, f64::NAN, 1.0, -3.0, 4.0, 0.0]));
-        let (x, number) = steps.corners();
+        let steps = Steps::new(&distribution(&[4.0, f64::NAN, 1.0, -3.0, 4.0, 0.0]));
+        let (x, number): (Vec<f64>, Vec<f64>) = steps.corners().into_iter().unzip();
         assert_eq!(x, [1.0, 1.0, 1.0, 4.0, 4.0, 4.0]);
         assert_eq!(number, [3.0, 3.0, 2.0, 2.0, 1.0, 1.0]);
     }

@@ -78,7 +78,7 @@ pub fn field_maps(maps: &FieldMaps, size: PictureSize) -> Result<Picture, Pictur
     let max_width = if is_asked { f64::INFINITY } else { MAX_WIDTH };
     let width = (room_of(columns) - GAP).min(max_width).round();
     let height = (width * (first.ny as f64 / first.nx as f64).clamp(0.2, 5.0)).round();
-    let titles: Vec<Titles> = maps.maps.iter().map(|map| Titles::of(map, width)).collect();
+    let titles: Vec<Titles> = maps.maps.iter().map(|map| Titles::new(map, width)).collect();
     let lines = titles.iter().map(|titles| titles.label.len()).max().unwrap_or(1);
     let title_room = TITLE_ROOM + LINE * lines.saturating_sub(1) as f64;
     let pitch = height + title_room + GAP;
@@ -114,10 +114,10 @@ fn draw_map(canvas: &mut Canvas, map: &FieldMap, area: Area, range: [f64; 2]) {
         .textured
         .iter()
         .map(|&textured| if textured { 1.0 } else { 0.0 });
-    let shares = CellMeans::of(nx, ny, flags);
+    let shares = CellMeans::compute(nx, ny, flags);
     let textured: Vec<bool> = shares.into_iter().map(|share| share > 0.5).collect();
-    let means = CellMeans::of(nx, ny, map.values.iter().copied());
-    Cells::of(nx, ny, &textured).draw(canvas, area, &means, range);
+    let means = CellMeans::compute(nx, ny, map.values.iter().copied());
+    Cells::new(nx, ny, &textured).draw(canvas, area, &means, range);
     for &[i, j] in &map.marks {
         let centre = ((i as f64 + 0.5) / map.nx as f64, (j as f64 + 0.5) / map.ny as f64);
         circle(canvas, place(area, centre), MARK);
@@ -133,7 +133,7 @@ struct Titles {
 
 impl Titles {
     /// The lines over a map of this width; the label takes at most two.
-    fn of(map: &FieldMap, width: f64) -> Self {
+    fn new(map: &FieldMap, width: f64) -> Self {
         let room = width + 0.6 * GAP;
         let shortened = |text: &str| Text::shortened(text, SIZE_TEXT, room);
         let label = Text::wrapped(&map.label, SIZE_TEXT, room, 2);

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use tiny_skia::PathBuilder;
+use tiny_skia::{PathBuilder, PathSegment, Point};
 
 /// Font that an SVG embeds.
 pub(crate) const WOFF2: &[u8] = include_bytes!("font/DejaVuSans-subset.woff2");
@@ -40,33 +40,24 @@ pub(crate) fn advance(character: char) -> f64 {
     f64::from(glyph(character).map_or(1.0, |glyph| glyph.width / UNITS_PER_EM))
 }
 
-/// A part of an outline: points are x from the pen and y above the baseline, in units of the font.
-pub(crate) enum GlyphPart {
-    /// The first point of a contour.
-    Start([f32; 2]),
-    Line([f32; 2]),
-    /// A quadratic curve: its control point and its end.
-    Curve([[f32; 2]; 2]),
-    /// The end of a contour, which goes back to its first point.
-    Close,
-}
-
-/// The outline of `character`; a box if the font lacks it.
-pub(crate) fn outline(character: char) -> impl Iterator<Item = GlyphPart> {
+/// The outline of `character`; a box if the font lacks it. Points are x from the pen and y above the
+/// baseline, in units of the font.
+pub(crate) fn outline(character: char) -> impl Iterator<Item = PathSegment> {
+    let point = Point::from_xy;
     let outline = glyph(character)
         .or_else(|| GLYPHS.get("missing"))
         .map_or("", |glyph| glyph.outline);
     outline
         .split(' ')
         .filter(|command| !command.is_empty())
-        .map(|command| {
+        .map(move |command| {
             let numbers = command.split(&['M', 'L', 'Q', ',']);
             let coordinates: Vec<f32> = numbers.filter_map(|number| number.parse().ok()).collect();
             match coordinates[..] {
-                [x, y] if command.starts_with('M') => GlyphPart::Start([x, y]),
-                [x, y] => GlyphPart::Line([x, y]),
-                [cx, cy, x, y] => GlyphPart::Curve([[cx, cy], [x, y]]),
-                _ => GlyphPart::Close,
+                [x, y] if command.starts_with('M') => PathSegment::MoveTo(point(x, y)),
+                [x, y] => PathSegment::LineTo(point(x, y)),
+                [cx, cy, x, y] => PathSegment::QuadTo(point(cx, cy), point(x, y)),
+                _ => PathSegment::Close,
             }
         })
 }
@@ -74,22 +65,18 @@ pub(crate) fn outline(character: char) -> impl Iterator<Item = GlyphPart> {
 /// Adds the outline of `character` to a path; a box if the font lacks it. `place` maps a point of the outline
 /// (x from the pen and y above the baseline, over the font size) to the picture.
 pub(crate) fn draw(character: char, path: &mut PathBuilder, place: impl Fn(f32, f32) -> (f32, f32)) {
-    let place = |[x, y]: [f32; 2]| place(x / UNITS_PER_EM, y / UNITS_PER_EM);
+    let place = |at: Point| Point::from(place(at.x / UNITS_PER_EM, at.y / UNITS_PER_EM));
     for part in outline(character) {
         match part {
-            GlyphPart::Start(point) => {
-                let (x, y) = place(point);
-                path.move_to(x, y);
+            PathSegment::MoveTo(start) => path.move_to(place(start).x, place(start).y),
+            PathSegment::LineTo(end) => path.line_to(place(end).x, place(end).y),
+            PathSegment::QuadTo(control, end) => {
+                let [control, end] = [control, end].map(place);
+                path.quad_to(control.x, control.y, end.x, end.y);
             }
-            GlyphPart::Line(point) => {
-                let (x, y) = place(point);
-                path.line_to(x, y);
-            }
-            GlyphPart::Curve(points) => {
-                let [(cx, cy), (x, y)] = points.map(place);
-                path.quad_to(cx, cy, x, y);
-            }
-            GlyphPart::Close => path.close(),
+            PathSegment::Close => path.close(),
+            // TrueType has no cubic curves.
+            PathSegment::CubicTo(..) => {}
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::color_image::Image;
 use crate::geometry::{Align, Area};
 use crate::style::{BLACK, MARGIN, SIZE_TEXT, TICK_LENGTH, WIDTH_FRAME};
 use crate::text::Text;
-use crate::ticks::{Direction, Tick};
+use crate::ticks::{Direction, MAX_STEPS, Tick};
 
 /// The room below a panel for numbers and a title.
 pub(crate) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TEXT as f64 + SIZE_TEXT as f64 + MARGIN;
@@ -77,6 +77,22 @@ pub(crate) fn short_ticks(canvas: &mut Canvas, area: Area, direction: Direction,
         };
         canvas.line(from, to, WIDTH_FRAME, BLACK);
     }
+}
+
+/// Draws the left and the lower side of `area` along the axes of x and y, with short ticks between the
+/// numbers of a logarithmic axis.
+pub(crate) fn numbered_sides(
+    canvas: &mut Canvas,
+    area: Area,
+    [x, y]: [&DrawnAxis; 2],
+    [x_title, y_title]: [&str; 2],
+) {
+    let title = Text::fitted(y_title, upright_room(area, canvas.height));
+    left_side(canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
+    short_ticks(canvas, area, Direction::Y, &y.short_ticks());
+    short_ticks(canvas, area, Direction::X, &x.short_ticks());
+    let title = Text::fitted(x_title, area.width);
+    lower_side(canvas, area, &x.ticks(Direction::X, MAX_STEPS), &title);
 }
 
 /// Ticks at round numbers next to a colour bar over this range.

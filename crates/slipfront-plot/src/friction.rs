@@ -54,7 +54,7 @@ pub fn friction(
         ];
         check_columns(&curve.label, ("abscissae", curve.x.len()), &columns)?;
     }
-    let panels = Panels::of(curves, width, None);
+    let panels = Panels::new(curves, width, None);
     let named: Vec<&FrictionCurve> = curves.iter().filter(|_| curves.len() > 1).collect();
     let labels: Vec<&str> = named.iter().map(|curve| curve.label.as_str()).collect();
     let (folder, own) = without_common_folder(&labels);
@@ -65,12 +65,12 @@ pub fn friction(
             LegendSample::Line
         }
     });
-    let names: Vec<_> = own.into_iter().zip(samples).collect();
-    let legend = Legend::of(folder, &names, panels.x.start, panels.x.end);
+    let names = own.into_iter().zip(samples);
+    let legend = Legend::new(folder, names, panels.x.start, panels.x.end);
     let above = if curves.len() > 1 { legend.height } else { ABOVE };
     size.check_height(above)?;
     let panels = match size.height() {
-        Some(height) => Panels::of(curves, width, Some(height - above)),
+        Some(height) => Panels::new(curves, width, Some(height - above)),
         None => panels,
     };
     let panels = panels.lowered(above);
@@ -102,29 +102,25 @@ struct FrictionDrawing<'a> {
 impl FrictionDrawing<'_> {
     /// Draws one curve with its marks.
     fn draw_one(&mut self, curve: &FrictionCurve) {
-        let Panels {
-            x: across,
-            mu,
-            sliding,
-        } = self.panels;
+        let Panels { x, mu, sliding } = self.panels;
         let is_window = |window: &KineticLine| drawable(window.mean) && window.from < window.to;
         let window = curve.kinetic.filter(is_window);
         if let Some(window) = &window {
             self.shade_window(window);
         }
-        let first_slip = curve.first_slip.filter(|&slip| across.contains(slip));
-        let first_slip = first_slip.map(|slip| across.at(slip));
-        if let Some(x) = first_slip {
+        let first_slip = curve.first_slip.filter(|&slip| x.contains(slip));
+        let first_slip = first_slip.map(|slip| x.at(slip));
+        if let Some(at) = first_slip {
             for axis in [mu, sliding] {
-                self.canvas
-                    .line((x, axis.start), (x, axis.end), WIDTH_LEADER, GREY);
+                let ends = [axis.start, axis.end].map(|end| (at, end));
+                self.canvas.line(ends[0], ends[1], WIDTH_LEADER, GREY);
             }
-            self.placer.avoid(&[(x, mu.start), (x, mu.end)]);
+            self.placer.avoid(&[(at, mu.start), (at, mu.end)]);
         }
         self.draw_curve(curve, curve_style(0));
         if let Some(window) = &window {
             // Drawn after the curve, which would otherwise hide it.
-            let ends = [window.from, window.to].map(|t| (across.clamped(t), mu.clamped(window.mean)));
+            let ends = [window.from, window.to].map(|t| (x.clamped(t), mu.clamped(window.mean)));
             self.canvas.line(ends[0], ends[1], WIDTH_MARK, CURVES[1]);
             self.placer.avoid(&ends);
         }
@@ -185,12 +181,8 @@ impl FrictionDrawing<'_> {
 
     /// Shades the window of kinetic friction in both panels, and the uncertainty of its mean.
     fn shade_window(&mut self, window: &KineticLine) {
-        let Panels {
-            x: across,
-            mu,
-            sliding,
-        } = self.panels;
-        let (from, to) = (across.clamped(window.from), across.clamped(window.to));
+        let Panels { x, mu, sliding } = self.panels;
+        let (from, to) = (x.clamped(window.from), x.clamped(window.to));
         for axis in [mu, sliding] {
             self.canvas
                 .fill(Area::between(from, to, axis.start, axis.end), SHADE, 0.25);
@@ -204,14 +196,10 @@ impl FrictionDrawing<'_> {
 
     /// Draws friction and N*; labels avoid the friction curve.
     fn draw_curve(&mut self, curve: &FrictionCurve, style: CurveStyle) {
-        let Panels {
-            x: across,
-            mu,
-            sliding,
-        } = &self.panels;
-        let friction = segments(&curve.x, &curve.friction, across, mu);
+        let Panels { x, mu, sliding } = &self.panels;
+        let friction = segments(curve.friction_points(), x, mu);
         friction.iter().for_each(|segment| self.placer.avoid(segment));
-        let sliding = segments(&curve.x, &curve.sliding_percent, across, sliding);
+        let sliding = segments(curve.sliding_points(), x, sliding);
         for segment in friction.into_iter().chain(sliding) {
             match segment[..] {
                 [point] => self.canvas.dot(point, 0.6 * DOT, style.colour),
@@ -222,8 +210,8 @@ impl FrictionDrawing<'_> {
 
     /// Draws the points of a record.
     fn draw_points(&mut self, curve: &FrictionCurve, colour: Rgb) {
-        let Panels { x: across, mu, .. } = &self.panels;
-        for point in segments(&curve.x, &curve.friction, across, mu).concat() {
+        let Panels { x, mu, .. } = &self.panels;
+        for point in segments(curve.friction_points(), x, mu).concat() {
             self.canvas.disc(point, POINT, colour);
         }
     }

@@ -55,6 +55,18 @@ pub struct FrictionCurve {
     pub is_record: bool,
 }
 
+impl FrictionCurve {
+    /// The points of friction.
+    pub(crate) fn friction_points(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.x.iter().copied().zip(self.friction.iter().copied())
+    }
+
+    /// The points of N*.
+    pub(crate) fn sliding_points(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.x.iter().copied().zip(self.sliding_percent.iter().copied())
+    }
+}
+
 /// Kinetic friction: its mean over a window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KineticLine {

@@ -23,7 +23,7 @@ pub(crate) struct Panels {
 impl Panels {
     /// Panels for all curves and their marks, at the top of a picture of this width. Their height, with the
     /// room below them, is the given height or the usual one.
-    pub(crate) fn of(curves: &[FrictionCurve], width: f64, height: Option<f64>) -> Self {
+    pub(crate) fn new(curves: &[FrictionCurve], width: f64, height: Option<f64>) -> Self {
         // The panels share the height in the usual proportion.
         let usual = HEIGHT_FRICTION + HEIGHT_SLIDING;
         let larger = height.map_or(1.0, |height| (height - MARGIN - GAP - LOWER_ROOM) / usual);
@@ -151,7 +151,7 @@ mod tests {
                 sliding_percent: vec![0.0, 100.0],
                 ..FrictionCurve::default()
             };
-            let panels = Panels::of(&[curve], COLUMN_WIDTH, None);
+            let panels = Panels::new(&[curve], COLUMN_WIDTH, None);
             for (x, text) in x_ticks(&panels.x) {
                 assert!(x + 0.5 * text.width() <= COLUMN_WIDTH, "{end}");
             }

@@ -9,9 +9,7 @@ use crate::color_image::{Image, level};
 use crate::contour::{contours, smoothed};
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side};
 use crate::geometry::Area;
-use crate::lattice_map::{
-    Cells, MARK, MIN_RATIO, block_count, check_block_size, check_length, circle, place, unit_of,
-};
+use crate::lattice_map::{DrawnLattice, MARK, MIN_RATIO, check_length, circle, place, unit_of};
 use crate::note::Note;
 use crate::picture::Picture;
 use crate::picture_error::PictureError;
@@ -52,14 +50,8 @@ const TOP: f64 = MARGIN + 8.0;
 /// The times at which the blocks of a lattice have first slipped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrontMap {
-    /// Blocks along x.
-    pub nx: usize,
-    /// Blocks along y.
-    pub ny: usize,
-    /// Edge of a block, in metres.
-    pub block_size: f64,
-    /// True for every mostly textured [cell](CellMeans), row by row from y = 0.
-    pub textured: Vec<bool>,
+    /// The lattice.
+    pub lattice: DrawnLattice,
     /// Mean t* of the first slip of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
     pub first_slips: Vec<f32>,
     /// Places at which slip has nucleated, in metres, the earliest first.
@@ -81,11 +73,6 @@ pub struct SpaceTime {
     pub shares: Vec<f32>,
 }
 
-/// Whether the map of a slider is above the other panel, given its height over its length.
-fn is_above(ratio: f64) -> bool {
-    ratio * MAX_RATIO < 1.0
-}
-
 /// Draws the map next to the space-time panel, or above it for a long slider or in a narrow picture. The
 /// picture is at most as wide as a journal's text (175 mm), or as wide as requested. Nucleations are circled,
 /// the first one filled; the texture is outlined.
@@ -97,13 +84,12 @@ fn is_above(ratio: f64) -> bool {
 pub fn front(map: &FrontMap, space_time: &SpaceTime, size: PictureSize) -> Result<Picture, PictureError> {
     check(map, space_time)?;
     size.expect_no_height()?;
-    let layout = FrontLayout::of(map, space_time, size.roomy_width(TEXT_WIDTH)?);
+    let layout = FrontLayout::new(map, space_time, size.roomy_width(TEXT_WIDTH)?);
     let lines = contour_lines(map, layout.map.bar.range);
-    let note = Note::of(&meaning_of_marks(map, &lines), 0.5 * layout.width, layout.width);
+    let note = Note::new(&meaning_of_marks(map, &lines), 0.5 * layout.width, layout.width);
     let mut canvas = Canvas::sized(layout.width, layout.height + note.height, size);
-    draw_map(&mut canvas, map, &layout, lines);
-    let [.., place] = &layout.titles;
-    draw_space_time(&mut canvas, space_time, &layout.space_time, place);
+    draw_map(&mut canvas, map, &layout.map, lines);
+    draw_space_time(&mut canvas, space_time, &layout.space_time);
     note.draw(&mut canvas);
     canvas.widened(size).finish()
 }
@@ -116,7 +102,7 @@ pub fn front(map: &FrontMap, space_time: &SpaceTime, size: PictureSize) -> Resul
 /// No instant, an array of the wrong length, or a size without room for the panel.
 pub fn kymograph(space_time: &SpaceTime, size: PictureSize) -> Result<Picture, PictureError> {
     check_space_time(space_time)?;
-    let (axes, place) = space_time_axes(space_time);
+    let (axes, titles) = space_time_axes(space_time);
     let upper = share_bar(space_time, HEIGHT_ALONE).upper_room();
     let height = size.panel(HEIGHT_ALONE, TOP + upper + LOWER_ROOM, 1)?;
     let left = left_room(&axes[1].placed(height, 0.0).ticks(Direction::Y, 5));
@@ -128,15 +114,16 @@ pub fn kymograph(space_time: &SpaceTime, size: PictureSize) -> Result<Picture, P
         area,
         edge: 0.0,
         axes,
+        titles,
         bar,
     };
     let mut canvas = Canvas::sized(panel.right() + MARGIN, area.bottom() + LOWER_ROOM, size);
-    draw_space_time(&mut canvas, space_time, &panel, &place);
+    draw_space_time(&mut canvas, space_time, &panel);
     canvas.widened(size).finish()
 }
 
-/// The axes of times and places, and the title of the places.
-fn space_time_axes(space_time: &SpaceTime) -> ([DrawnAxis; 2], String) {
+/// The axes of times and places, and their titles.
+fn space_time_axes(space_time: &SpaceTime) -> ([DrawnAxis; 2], [String; 2]) {
     let [from, to] = space_time.places;
     let (unit, factor) = unit_of(from.abs().max(to.abs()));
     let around = |[from, to]: [f64; 2]| {
@@ -144,7 +131,8 @@ fn space_time_axes(space_time: &SpaceTime) -> ([DrawnAxis; 2], String) {
         DrawnAxis::linear(lo, hi)
     };
     let axes = [around(space_time.times), around([from * factor, to * factor])];
-    (axes, format!("{} ({unit})", space_time.place))
+    let place = format!("{} ({unit})", space_time.place);
+    (axes, ["time t*".to_owned(), place])
 }
 
 /// The colour bar of the shares, which ends at the largest of them.
@@ -169,33 +157,21 @@ fn meaning_of_marks(map: &FrontMap, lines: &[Vec<(f64, f64)>]) -> String {
         (map.nucleations.len() > 1, "circles: the others"),
         (!lines.is_empty(), "white lines: equal times"),
     ];
-    let drawn: Vec<&str> = marks
-        .iter()
-        .filter(|(is_drawn, _)| *is_drawn)
-        .map(|(_, words)| *words)
-        .collect();
-    drawn.join("; ")
+    let drawn = marks.into_iter().filter(|(is_drawn, _)| *is_drawn);
+    drawn.map(|(_, words)| words).collect::<Vec<_>>().join("; ")
 }
 
 fn check_space_time(space_time: &SpaceTime) -> Result<(), PictureError> {
-    let rows = space_time
-        .shares
-        .len()
-        .checked_div(space_time.columns)
-        .unwrap_or(0);
-    if rows == 0 {
-        return Err(PictureError::Nothing("instant"));
+    let (found, columns) = (space_time.shares.len(), space_time.columns);
+    match found.checked_div(columns) {
+        None | Some(0) => Err(PictureError::Nothing("instant")),
+        Some(rows) => check_length("what slides", found, rows * columns),
     }
-    let expected = rows * space_time.columns;
-    check_length("what slides", space_time.shares.len(), expected)
 }
 
 fn check(map: &FrontMap, space_time: &SpaceTime) -> Result<(), PictureError> {
-    block_count(map.nx, map.ny)?;
-    check_block_size(map.block_size)?;
-    let [columns, rows] = CellMeans::cells(map.nx, map.ny);
-    check_length("the texture", map.textured.len(), columns * rows)?;
-    check_length("the map of first slips", map.first_slips.len(), columns * rows)?;
+    map.lattice
+        .check(&[("the map of first slips".to_owned(), &map.first_slips)])?;
     check_space_time(space_time)
 }
 
@@ -205,21 +181,17 @@ struct FrontPanel {
     /// Left end of the room of the panel.
     edge: f64,
     axes: [DrawnAxis; 2],
+    titles: [String; 2],
     bar: ColourBar,
 }
 
 impl FrontPanel {
-    fn draw_axes(&self, canvas: &mut Canvas, [x_title, y_title]: [&str; 2]) {
-        let area = self.area;
+    fn draw_axes(&self, canvas: &mut Canvas) {
+        let (area, [x_title, y_title]) = (self.area, &self.titles);
         canvas.frame(area);
         let y_ticks = ticks(self.axes[1], area, Direction::Y);
-        left_side(
-            canvas,
-            area,
-            self.edge,
-            &y_ticks,
-            &Text::fitted(y_title, area.height),
-        );
+        let title = Text::fitted(y_title, area.height);
+        left_side(canvas, area, self.edge, &y_ticks, &title);
         let x_ticks = ticks(self.axes[0], area, Direction::X);
         let title = Text::fitted(x_title, area.width + 2.0 * GAP);
         lower_side(canvas, area, &x_ticks, &title);
@@ -248,35 +220,31 @@ struct FrontLayout {
     height: f64,
     map: FrontPanel,
     space_time: FrontPanel,
-    /// Titles of the axes of the map, and of the places of the other panel.
-    titles: [String; 3],
 }
 
 impl FrontLayout {
     /// Panels in a picture that is at most this wide.
-    fn of(map: &FrontMap, space_time: &SpaceTime, whole: f64) -> Self {
-        let lengths = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
+    fn new(map: &FrontMap, space_time: &SpaceTime, whole: f64) -> Self {
+        let lengths = map.lattice.sides();
         let units = lengths.map(unit_of);
         let sides = [0, 1].map(|axis| DrawnAxis::linear(0.0, lengths[axis] * units[axis].1));
-        let (axes, place) = space_time_axes(space_time);
+        let space_time_axes = space_time_axes(space_time);
         let first_slips: [f64; 2] = range(quantiles(&map.first_slips).into_iter()).into();
         let map_bar = |height| ColourBar::labelled(FIRST_SLIP, first_slips, height);
         let bar = |height| share_bar(space_time, height);
         let left = |axis: DrawnAxis| left_room(&axis.placed(MAX_SIDE, 0.0).ticks(Direction::Y, 5));
-        let [map_left, left] = [left(sides[1]), left(axes[1])];
-        let panel = |area: Area, room: f64, axes: [DrawnAxis; 2], bar: ColourBar| FrontPanel {
+        let [map_left, left] = [left(sides[1]), left(space_time_axes.0[1])];
+        let titles = [format!("x ({})", units[0].0), format!("y ({})", units[1].0)];
+        let map_axes = (sides, titles);
+        let panel = |area: Area, room: f64, (axes, titles): ([DrawnAxis; 2], [String; 2]), bar| FrontPanel {
             edge: area.x - room,
             area,
             axes,
+            titles,
             bar,
         };
         let ratio = lengths[1] / lengths[0];
-        let titles = [
-            format!("x ({})", units[0].0),
-            format!("y ({})", units[1].0),
-            place,
-        ];
-        let (map, space_time) = if is_above(ratio) || whole < MIN_BESIDE {
+        let (map, space_time) = if ratio * MAX_RATIO < 1.0 || whole < MIN_BESIDE {
             let left = map_left.max(left);
             let widest = map_bar(HEIGHT_BELOW).room().max(bar(HEIGHT_BELOW).room());
             let width = (whole - left - GAP - widest - MARGIN).round();
@@ -288,8 +256,8 @@ impl FrontLayout {
             let below = upper.bottom() + LOWER_ROOM + TOP;
             let lower = Area::new(left, below, width, HEIGHT_BELOW);
             (
-                panel(upper, left, sides, map_bar),
-                panel(lower, left, axes, bar(HEIGHT_BELOW)),
+                panel(upper, left, map_axes, map_bar),
+                panel(lower, left, space_time_axes, bar(HEIGHT_BELOW)),
             )
         } else {
             let ratio = ratio.clamp(MIN_RATIO, 1.0 / MIN_RATIO);
@@ -299,12 +267,12 @@ impl FrontLayout {
                 (MAX_SIDE * ratio.min(1.0)).round()
             };
             let first = Area::new(map_left, TOP, (height / ratio).round(), height);
-            let first = panel(first, map_left, sides, map_bar(height));
+            let first = panel(first, map_left, map_axes, map_bar(height));
             let x = (first.right() + GAP + left).round();
             let bar = bar(MAX_SIDE);
             let width = whole - x - GAP - bar.room() - MARGIN;
             let second = Area::new(x, TOP, width.min(1.5 * MAX_SIDE).round(), MAX_SIDE);
-            (first, panel(second, left, axes, bar))
+            (first, panel(second, left, space_time_axes, bar))
         };
         let lowest = map.area.bottom().max(space_time.area.bottom());
         Self {
@@ -312,7 +280,6 @@ impl FrontLayout {
             height: lowest + LOWER_ROOM,
             map,
             space_time,
-            titles,
         }
     }
 }
@@ -331,7 +298,7 @@ fn quantiles(times: &[f32]) -> [f64; 2] {
 
 /// Contours of the time of first slip in a map with this range of colours, as fractions of its sides.
 fn contour_lines(map: &FrontMap, range: [f64; 2]) -> Vec<Vec<(f64, f64)>> {
-    let [columns, rows] = CellMeans::cells(map.nx, map.ny);
+    let [columns, rows] = CellMeans::cells(map.lattice.nx, map.lattice.ny);
     let reach = 1 + columns.max(rows) / SMOOTHED_SHARE;
     let means = smoothed(&map.first_slips, columns, reach);
     let at = |(x, y): (f64, f64)| ((x + 0.5) / columns as f64, (y + 0.5) / rows as f64);
@@ -342,14 +309,15 @@ fn contour_lines(map: &FrontMap, range: [f64; 2]) -> Vec<Vec<(f64, f64)>> {
         .collect()
 }
 
-fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &FrontLayout, lines: Vec<Vec<(f64, f64)>>) {
-    let (area, panel) = (layout.map.area, &layout.map);
-    Cells::of(map.nx, map.ny, &map.textured).draw(canvas, area, &map.first_slips, panel.bar.range);
+fn draw_map(canvas: &mut Canvas, map: &FrontMap, panel: &FrontPanel, lines: Vec<Vec<(f64, f64)>>) {
+    let area = panel.area;
+    let cells = map.lattice.cells();
+    cells.draw(canvas, area, &map.first_slips, panel.bar.range);
     for line in lines {
         let points = line.into_iter().map(|point| place(area, point));
         canvas.polyline(points.collect(), WIDTH_FRAME, WHITE);
     }
-    let sides = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
+    let sides = map.lattice.sides();
     // The first one is drawn last, on top of all others.
     for (index, [x, y]) in map.nucleations.iter().enumerate().rev() {
         let (x, y) = (x / sides[0], y / sides[1]);
@@ -362,22 +330,17 @@ fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &FrontLayout, lines: Ve
             canvas.dot(at, RADIUS_MARKER, MARK);
         }
     }
-    let [x, y, _] = &layout.titles;
-    panel.draw_axes(canvas, [x, y]);
+    panel.draw_axes(canvas);
 }
 
 /// The levels of the contours of these means of first slips, on a map with `side` cells along its shorter
 /// side.
 fn levels([lo, hi]: [f64; 2], first_slips: &[f32], means: &[f32], side: usize) -> Vec<f64> {
-    let deviations = first_slips
-        .iter()
-        .zip(means)
-        .map(|(time, mean)| f64::from(time - mean));
-    let deviations = deviations.filter(|deviation| deviation.is_finite());
-    let (sum, count) = deviations.fold((0.0, 0.0), |(sum, count), deviation| {
-        (sum + deviation * deviation, count + 1.0)
-    });
-    let scatter = f64::sqrt(sum / count);
+    let pairs = first_slips.iter().zip(means);
+    let deviations = pairs.map(|(time, mean)| f64::from(time - mean));
+    let deviations: Vec<f64> = deviations.filter(|deviation| deviation.is_finite()).collect();
+    let squares: f64 = deviations.iter().map(|deviation| deviation * deviation).sum();
+    let scatter = f64::sqrt(squares / deviations.len() as f64);
     // Without scatter, the largest number of steps.
     let steps = ((hi - lo) / (SCATTERS_APART * scatter)).min(CONTOUR_STEPS as f64) as usize;
     if steps >= 2 && side >= MIN_CELLS_OF_CONTOURS {
@@ -387,9 +350,9 @@ fn levels([lo, hi]: [f64; 2], first_slips: &[f32], means: &[f32], side: usize) -
     }
 }
 
-fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, panel: &FrontPanel, place: &str) {
+fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, panel: &FrontPanel) {
     let rows = space_time.shares.len() / space_time.columns;
-    let means = CellMeans::of(space_time.columns, rows, space_time.shares.iter().copied());
+    let means = CellMeans::compute(space_time.columns, rows, space_time.shares.iter().copied());
     let [columns, _] = CellMeans::cells(space_time.columns, rows);
     let instants = means.len() / columns;
     // The image's first row is the uppermost, the farthest place.
@@ -402,7 +365,7 @@ fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, panel: &FrontPan
             .map(|cell| level(f64::from(means[cell]), panel.bar.range))
             .collect(),
     });
-    panel.draw_axes(canvas, ["time t*", place]);
+    panel.draw_axes(canvas);
 }
 
 #[cfg(test)]
@@ -413,12 +376,14 @@ mod tests {
         let [columns, rows] = CellMeans::cells(nx, ny);
         let times = (0..columns * rows).map(|cell| (cell % columns + cell / columns) as f32);
         FrontMap {
-            nx,
-            ny,
-            block_size: 1e-6,
-            textured: (0..columns * rows)
-                .map(|cell| columns > 4 && cell % columns == 2)
-                .collect(),
+            lattice: DrawnLattice {
+                nx,
+                ny,
+                block_size: 1e-6,
+                textured: (0..columns * rows)
+                    .map(|cell| columns > 4 && cell % columns == 2)
+                    .collect(),
+            },
             first_slips: times.collect(),
             nucleations: vec![[0.5e-6, 0.5e-6], [nx as f64 * 0.9e-6, ny as f64 * 0.9e-6]],
         }
@@ -447,7 +412,7 @@ mod tests {
             (1000, 300),
         ] {
             let (map, space_time) = (map(nx, ny), space_time(nx.min(1024), 90));
-            let layout = FrontLayout::of(&map, &space_time, TEXT_WIDTH);
+            let layout = FrontLayout::new(&map, &space_time, TEXT_WIDTH);
             assert!(layout.width <= TEXT_WIDTH + 12.0, "{nx} x {ny}: {}", layout.width);
             for panel in [&layout.map, &layout.space_time] {
                 assert!(
@@ -529,7 +494,7 @@ mod tests {
             *time = (index * index * 7919 % 1009) as f32;
         }
         let of = |map: &FrontMap| {
-            let [columns, rows] = CellMeans::cells(map.nx, map.ny);
+            let [columns, rows] = CellMeans::cells(map.lattice.nx, map.lattice.ny);
             let range = range(quantiles(&map.first_slips).into_iter()).into();
             let means = smoothed(&map.first_slips, columns, 1);
             levels(range, &map.first_slips, &means, columns.min(rows)).len()
@@ -570,11 +535,11 @@ mod tests {
                 .to_string()
         };
         assert_eq!(
-            error(&|map, _| map.nx = 0),
+            error(&|map, _| map.lattice.nx = 0),
             "a lattice of 0 x 3 blocks cannot be drawn"
         );
         assert_eq!(
-            error(&|map, _| map.textured.clear()),
+            error(&|map, _| map.lattice.textured.clear()),
             "the texture has 0 values instead of 6"
         );
         assert_eq!(

@@ -24,7 +24,7 @@ impl MovieGif {
     ///
     /// # Errors
     /// When there are more than 255 colours.
-    pub fn of(palette: &[[u8; 3]], size: MovieSize) -> Result<Self, PictureError> {
+    pub fn new(palette: &[[u8; 3]], size: MovieSize) -> Result<Self, PictureError> {
         let transparent = palette.len();
         let mut colours = palette.concat();
         colours.extend([255; 3]);
@@ -93,24 +93,11 @@ impl From<EncodingError> for PictureError {
 
 /// Left, top, right and bottom of the rectangle of pixels that differ; one pixel where none differs.
 fn changed(before: &[u8], now: &[u8], width: usize) -> [usize; 4] {
-    let mut rectangle = [width, before.len() / width, 0, 0];
-    for (row, (before, now)) in before
-        .chunks_exact(width)
-        .zip(now.chunks_exact(width))
-        .enumerate()
-    {
-        let differs = |column: &usize| before[*column] != now[*column];
-        let Some(first) = (0..width).find(differs) else {
-            continue;
-        };
-        let last = (0..width).rev().find(differs).unwrap_or(first);
-        rectangle = [
-            rectangle[0].min(first),
-            rectangle[1].min(row),
-            rectangle[2].max(last + 1),
-            row + 1,
-        ];
-    }
+    let differing = (0..now.len()).filter(|&pixel| before[pixel] != now[pixel]);
+    let rectangle = differing.fold([usize::MAX, usize::MAX, 0, 0], |[left, top, right, _], pixel| {
+        let (column, row) = (pixel % width, pixel / width);
+        [left.min(column), top.min(row), right.max(column + 1), row + 1]
+    });
     if rectangle[2] > 0 { rectangle } else { [0, 0, 1, 1] }
 }
 
@@ -131,7 +118,7 @@ mod tests {
         third[399 * MOVIE_PIXELS[0] + 799] = 2;
         third[5 * MOVIE_PIXELS[0] + 7] = 0;
         let pictures = [vec![0; size], second.clone(), second, third];
-        let mut file = MovieGif::of(&palette, MovieSize::Usual).unwrap();
+        let mut file = MovieGif::new(&palette, MovieSize::Usual).unwrap();
         for (picture, delay) in pictures.iter().zip([8, 8, 8, 40]) {
             file.add(picture.clone(), delay).unwrap();
         }

@@ -4,6 +4,7 @@ use crate::axis::{DrawnAxis, drawable, range, widened};
 use crate::canvas::Canvas;
 use crate::color_bar::ColourBar;
 use crate::color_image::{Image, level, level_colour};
+use crate::estimate::Estimate;
 use crate::frame::{BAR_WIDTH, LOWER_ROOM, left_room, left_side, lower_side, short_ticks};
 use crate::geometry::{Align, Area};
 use crate::note::Note;
@@ -37,13 +38,9 @@ pub struct HeatMap {
     pub y: HeatAxis,
     /// Quantity of the values.
     pub value_title: String,
-    /// One value for every cell: all of the first y, then all of the second; NaN is left grey.
-    pub values: Vec<f64>,
-    /// The half width of the confidence interval of every value in the same order, NaN where there is none;
-    /// may be empty.
-    pub half_widths: Vec<f64>,
-    /// Marks of cells that get a cross, in the order of the values; may be empty.
-    pub crossed: Vec<bool>,
+    /// One value for every cell: all of the first y, then all of the second. A cell without a mean is left
+    /// grey.
+    pub values: Vec<Estimate>,
     /// Meaning of the intervals, below the map; may be empty.
     pub note: String,
 }
@@ -71,27 +68,19 @@ pub struct HeatAxis {
 /// An axis without values, with a value that is not a number, or with a value twice; a number of values other
 /// than the number of cells; a size that leaves no room for the cells.
 pub fn heat_map(map: &HeatMap, size: PictureSize) -> Result<Picture, PictureError> {
-    let (mut x, mut y) = (HeatCells::of(&map.x)?, HeatCells::of(&map.y)?);
-    let values = in_order([&x, &y], &map.values)?;
-    let half_widths = if map.half_widths.is_empty() {
-        vec![f64::NAN; values.len()]
-    } else {
-        in_order([&x, &y], &map.half_widths)?
-    };
-    let crossed = if map.crossed.is_empty() {
-        vec![0.0; values.len()]
-    } else {
-        let crossed: Vec<f64> = map.crossed.iter().map(|&is| f64::from(u8::from(is))).collect();
-        in_order([&x, &y], &crossed)?
-    };
+    let (mut x, mut y) = (HeatCells::new(&map.x)?, HeatCells::new(&map.y)?);
+    let cells = in_order([&x, &y], &map.values)?;
+    let values: Vec<f64> = cells.iter().map(Estimate::drawn_mean).collect();
+    let half_width = |cell: &Estimate| Estimate::exact(0.5 * (cell.high - cell.low)).drawn_mean();
+    let half_widths: Vec<f64> = cells.iter().map(half_width).collect();
     let half = median(&half_widths);
     let with_half = values.iter().flat_map(|value| [value - half, value + half]);
     let ranges = [range(with_half), range(half_widths.iter().copied())].map(<[f64; 2]>::from);
 
     let whole = size.roomy_width(COLUMN_WIDTH)?;
     let has_intervals = half_widths.iter().any(|half| !half.is_nan());
-    let half_width = format!("half width, {}", map.value_title);
-    let below = Note::of(&map.note, 0.0, whole).height;
+    let half_width_title = format!("half width, {}", map.value_title);
+    let below = Note::new(&map.note, 0.0, whole).height;
     let height_of = |panels: usize| size.panel(HEIGHT, panels as f64 * (TOP + LOWER_ROOM) + below, panels);
     let none = vec![f64::NAN; values.len()];
     let mut panels = 1;
@@ -99,8 +88,11 @@ pub fn heat_map(map: &HeatMap, size: PictureSize) -> Result<Picture, PictureErro
         let height = height_of(panels)?;
         y.axis = y.axis.placed(TOP + height, TOP);
         let left = left_room(&y.ticks(Direction::Y).0);
-        let bar = |name: &str, range| ColourBar::of(Text::fitted(name, height), range, height);
-        let bars = [bar(&map.value_title, ranges[0]), bar(&half_width, ranges[1])];
+        let bar = |name: &str, range| ColourBar::new(Text::fitted(name, height), range, height);
+        let bars = [
+            bar(&map.value_title, ranges[0]),
+            bar(&half_width_title, ranges[1]),
+        ];
         let shown = if has_intervals { &bars[..] } else { &bars[..1] };
         let bar_room = shown.iter().map(ColourBar::room).fold(0.0, f64::max) + MARGIN;
         let width = (whole - left - GAP - bar_room).max(100.0).round();
@@ -117,12 +109,12 @@ pub fn heat_map(map: &HeatMap, size: PictureSize) -> Result<Picture, PictureErro
         panels = 2;
     };
     let panel = area.bottom() + LOWER_ROOM;
-    let note = Note::of(&map.note, area.centre().0, whole);
+    let note = Note::new(&map.note, area.centre().0, whole);
 
     let mut canvas = Canvas::sized(whole, panels as f64 * panel + note.height, size);
     let titles = [map.x.title.as_str(), &map.y.title];
     draw_panel(&mut canvas, area, [&x, &y], (&values, &bars[0]), texts, titles);
-    draw_crosses(&mut canvas, [&x, &y], &crossed);
+    draw_crosses(&mut canvas, [&x, &y], &cells);
     if panels == 2 {
         let area = Area {
             y: panel + TOP,
@@ -143,8 +135,18 @@ pub fn heat_map(map: &HeatMap, size: PictureSize) -> Result<Picture, PictureErro
     canvas.finish()
 }
 
-/// Values of cells in the order in which they are drawn; NaN in place of values that cannot be drawn.
-fn in_order([x, y]: [&HeatCells; 2], values: &[f64]) -> Result<Vec<f64>, PictureError> {
+/// The areas of all cells in the order in which they are drawn.
+fn cell_areas([x, y]: [&HeatCells; 2]) -> Vec<Area> {
+    let (edges_x, edges_y) = (x.edges(), y.edges());
+    let row = |y: &[f64]| -> Vec<Area> {
+        let columns = edges_x.windows(2);
+        columns.map(|x| Area::between(x[0], x[1], y[0], y[1])).collect()
+    };
+    edges_y.windows(2).flat_map(row).collect()
+}
+
+/// Values of cells in the order in which they are drawn.
+fn in_order([x, y]: [&HeatCells; 2], values: &[Estimate]) -> Result<Vec<Estimate>, PictureError> {
     let (columns, rows) = (x.values.len(), y.values.len());
     if columns.checked_mul(rows) != Some(values.len()) {
         let values = values.len();
@@ -154,21 +156,17 @@ fn in_order([x, y]: [&HeatCells; 2], values: &[f64]) -> Result<Vec<f64>, Picture
             values,
         });
     }
-    let value = |cell: usize| {
-        let value = values[y.order[cell / columns] * columns + x.order[cell % columns]];
-        if drawable(value) { value } else { f64::NAN }
-    };
+    let value = |cell: usize| values[y.order[cell / columns] * columns + x.order[cell % columns]];
     Ok((0..values.len()).map(value).collect())
 }
 
 /// Draws a cross in the lower left corner of the marked cells.
-fn draw_crosses(canvas: &mut Canvas, [x, y]: [&HeatCells; 2], crossed: &[f64]) {
+fn draw_crosses(canvas: &mut Canvas, [x, y]: [&HeatCells; 2], cells: &[Estimate]) {
     /// Distance from the corner to the middle of the cross.
     const INSET: f64 = 14.0;
-    let (edges_x, edges_y, columns) = (x.edges(), y.edges(), x.values.len());
-    for cell in (0..crossed.len()).filter(|&cell| crossed[cell] > 0.0) {
-        let corner = (edges_x[cell % columns], edges_y[cell / columns]);
-        cross(canvas, (corner.0 + INSET, corner.1 - INSET));
+    let areas = cell_areas([x, y]).into_iter().zip(cells);
+    for (area, _) in areas.filter(|(_, cell)| cell.crossed) {
+        cross(canvas, (area.x + INSET, area.bottom() - INSET));
     }
 }
 
@@ -218,7 +216,7 @@ struct HeatCells {
 }
 
 impl HeatCells {
-    fn of(axis: &HeatAxis) -> Result<Self, PictureError> {
+    fn new(axis: &HeatAxis) -> Result<Self, PictureError> {
         let error = |reason| PictureError::CellAxis {
             title: axis.title.clone(),
             reason,
@@ -355,11 +353,12 @@ fn cell_texts(
     if x.values.len().max(y.values.len()) > MAX_NUMBERED || !(1e-4..1e6).contains(&size) {
         return None;
     }
-    let smallest = |edges: Vec<f64>| {
-        let sizes = edges.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-        sizes.fold(f64::INFINITY, f64::min)
-    };
-    let (room_x, room_y) = (smallest(x.edges()) - 12.0, smallest(y.edges()) - 12.0);
+    let areas = cell_areas([x, y]);
+    let smallest = |side: fn(&Area) -> f64| areas.iter().map(side).fold(f64::INFINITY, f64::min);
+    let (room_x, room_y) = (
+        smallest(|area| area.width) - 12.0,
+        smallest(|area| area.height) - 12.0,
+    );
     // About two significant digits of the range, or one fewer.
     let decimals = libm::log10(50.0 / (hi - lo)).ceil().clamp(0.0, 9.0) as usize;
     let lines = |(&value, &half): (&f64, &f64), decimals, size| {
@@ -400,15 +399,12 @@ fn plus_minus(half: f64, decimals: usize) -> String {
 /// Writes the lines of every cell into it.
 fn draw_numbers(
     canvas: &mut Canvas,
-    [x, y]: [&HeatCells; 2],
+    cells: [&HeatCells; 2],
     texts: &[Vec<Text>],
     (values, range): (&[f64], [f64; 2]),
 ) {
-    let (edges_x, edges_y) = (x.edges(), y.edges());
-    for (index, (lines, &value)) in texts.iter().zip(values).enumerate() {
-        let (row, column) = (index / x.values.len(), index % x.values.len());
-        let middle = 0.5 * (edges_x[column] + edges_x[column + 1]);
-        let centre = 0.5 * (edges_y[row] + edges_y[row + 1]);
+    for ((lines, &value), area) in texts.iter().zip(values).zip(cell_areas(cells)) {
+        let (middle, centre) = area.centre();
         let colour = readable_on(level_colour(level(value, range)));
         let above = 0.5 * LINE * lines.len().saturating_sub(1) as f64;
         for (line, text) in lines.iter().enumerate() {
@@ -445,26 +441,34 @@ mod tests {
             x: axis(&values(columns), false),
             y: axis(&values(rows), true),
             value_title: "value".to_string(),
-            values: (0..columns * rows).map(|cell| 0.5 * cell as f64).collect(),
+            values: (0..columns * rows)
+                .map(|cell| Estimate::exact(0.5 * cell as f64))
+                .collect(),
             ..HeatMap::default()
         }
     }
 
+    fn with_half_widths(mut map: HeatMap, half: f64) -> HeatMap {
+        for value in &mut map.values {
+            (value.low, value.high) = (value.mean - half, value.mean + half);
+        }
+        map
+    }
+
     #[test]
     fn cells_reach_half_way_to_their_neighbours() {
-        let cells = HeatCells::of(&axis(&[4.0, 1.0, 2.0], false)).unwrap();
+        let cells = HeatCells::new(&axis(&[4.0, 1.0, 2.0], false)).unwrap();
         assert_eq!(cells.order, [1, 2, 0]);
         assert_eq!(cells.edges, [0.5, 1.5, 3.0, 5.0]);
-        let cells = HeatCells::of(&axis(&[1.0, 100.0], true)).unwrap();
+        let cells = HeatCells::new(&axis(&[1.0, 100.0], true)).unwrap();
         assert_eq!(cells.edges, [-1.0, 1.0, 3.0]);
     }
 
     #[test]
     fn the_order_of_the_values_does_not_matter() {
         let mut map = map(3, 2);
-        map.crossed = vec![true, false, false, false, true, false];
+        (map.values[0].crossed, map.values[4].crossed) = (true, true);
         let mut turned = map.clone();
-        turned.crossed.reverse();
         turned.x.values.reverse();
         turned.y.values.reverse();
         turned.values.reverse();
@@ -495,8 +499,7 @@ mod tests {
     #[test]
     fn half_widths_are_shown_wherever_there_are_some() {
         let svg = |columns: usize, half: f64| {
-            let mut map = map(columns, 3);
-            map.half_widths = vec![half; 3 * columns];
+            let map = with_half_widths(map(columns, 3), half);
             heat_map(&map, PictureSize::default()).unwrap().svg
         };
         let title = ">half width, value</text>";
@@ -510,18 +513,13 @@ mod tests {
         assert_eq!(svg(9, 0.25).matches(title).count(), 1);
         let none = svg(3, f64::NAN);
         assert!(!none.contains('\u{b1}') && !none.contains(title) && !none.contains("NaN"));
-        let mut short = map(2, 2);
-        short.half_widths = vec![1.0; 3];
-        let said = heat_map(&short, PictureSize::default()).unwrap_err().to_string();
-        assert_eq!(said, "a map of 2 x 2 cells has 3 values");
     }
 
     /// Values that differ by less than the intervals do not span all colours.
     #[test]
     fn the_colours_span_the_intervals() {
         let reaches_below = |half: f64| {
-            let mut map = map(9, 2);
-            map.half_widths = vec![half; 18];
+            let map = with_half_widths(map(9, 2), half);
             heat_map(&map, PictureSize::default())
                 .unwrap()
                 .svg
@@ -541,14 +539,14 @@ mod tests {
                 .svg
                 .contains(">none</text>")
         );
-        map.values[7] = f64::NAN;
+        map.values[7] = Estimate::NONE;
         assert!(
             heat_map(&map, PictureSize::default())
                 .unwrap()
                 .svg
                 .contains(">none</text>")
         );
-        map.values.fill(f64::INFINITY);
+        map.values.fill(Estimate::exact(f64::INFINITY));
         assert!(
             !heat_map(&map, PictureSize::default())
                 .unwrap()
@@ -565,7 +563,7 @@ mod tests {
         let mut odd = map(2, 2);
         odd.x.values = vec![1e-9, 12345.0];
         odd.y.values = vec![5e-324, 9e99];
-        odd.values = vec![-9e99, 9e99, 5e-324, 0.0];
+        odd.values = [-9e99, 9e99, 5e-324, 0.0].map(Estimate::exact).to_vec();
         assert!(
             !heat_map(&odd, PictureSize::default())
                 .unwrap()
@@ -609,7 +607,7 @@ mod tests {
             );
         }
         assert_eq!(
-            error(&|m| m.values.push(0.0)),
+            error(&|m| m.values.push(Estimate::NONE)),
             "a map of 2 x 3 cells has 7 values"
         );
     }

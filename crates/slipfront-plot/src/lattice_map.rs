@@ -1,4 +1,4 @@
-//! A map of values over the blocks of a lattice, for stress maps and field maps.
+//! Maps of values over the blocks of a lattice.
 
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
@@ -7,7 +7,7 @@ use crate::geometry::{Align, Area, CanvasPoint};
 use crate::mask_outline::outline;
 use crate::picture_error::PictureError;
 use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_TEXT, WHITE, WIDTH_MARK};
-use crate::text::Text;
+use crate::text::{Text, number};
 
 /// Least width of maps side by side in a picture of requested width, 21 mm.
 pub(crate) const MIN_MAP: f64 = 250.0;
@@ -42,14 +42,6 @@ pub(crate) fn check_length(what: &str, found: usize, expected: usize) -> Result<
     })
 }
 
-/// Refuses a number that cannot be the edge of a block in metres.
-pub(crate) fn check_block_size(block_size: f64) -> Result<(), PictureError> {
-    if block_size > 0.0 && block_size < 1e9 {
-        return Ok(());
-    }
-    Err(PictureError::BlockSize(block_size.to_string()))
-}
-
 /// The unit in which a length reads well, and the number of units in a metre.
 pub(crate) fn unit_of(length: f64) -> (&'static str, f64) {
     match length {
@@ -57,6 +49,102 @@ pub(crate) fn unit_of(length: f64) -> (&'static str, f64) {
         ..1e-3 => ("\u{b5}m", 1e6),
         ..1.0 => ("mm", 1e3),
         _ => ("m", 1.0),
+    }
+}
+
+/// A lattice of blocks as it is drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DrawnLattice {
+    /// Blocks along x.
+    pub nx: usize,
+    /// Blocks along y.
+    pub ny: usize,
+    /// Edge of a block, in metres.
+    pub block_size: f64,
+    /// True for every mostly textured [cell](CellMeans), row by row from y = 0.
+    pub textured: Vec<bool>,
+}
+
+impl DrawnLattice {
+    /// Refuses a lattice that cannot be drawn, and these arrays if they do not have one value for every cell.
+    pub(crate) fn check(&self, arrays: &[(String, &[f32])]) -> Result<(), PictureError> {
+        block_count(self.nx, self.ny)?;
+        if !(self.block_size > 0.0 && self.block_size < 1e9) {
+            return Err(PictureError::BlockSize(self.block_size.to_string()));
+        }
+        let [columns, rows] = CellMeans::cells(self.nx, self.ny);
+        check_length("the texture", self.textured.len(), columns * rows)?;
+        arrays
+            .iter()
+            .try_for_each(|(what, values)| check_length(what, values.len(), columns * rows))
+    }
+
+    /// Lengths of the sides, in metres.
+    pub(crate) fn sides(&self) -> [f64; 2] {
+        [self.nx, self.ny].map(|count| count as f64 * self.block_size)
+    }
+
+    pub(crate) fn cells(&self) -> Cells {
+        Cells::new(self.nx, self.ny, &self.textured)
+    }
+}
+
+/// Maps of a field at snapshots of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SnapshotMaps {
+    /// The lattice of all maps.
+    pub lattice: DrawnLattice,
+    /// The maps, in the order of time.
+    pub maps: Vec<SnapshotMap>,
+    /// Quantity of the values, at the colour bar; the character after an underscore is a subscript.
+    pub value_title: String,
+    /// Values at the ends of the colour bar; values beyond are drawn as the ends.
+    pub range: [f64; 2],
+}
+
+/// A map of a field at a snapshot of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SnapshotMap {
+    /// Letters of the instants A-F that the map shows, such as "A, B", or its name; may be empty.
+    pub label: String,
+    /// Time t* of the map.
+    pub time_star: f64,
+    /// Friction coefficient mu* at that time; not written if NaN.
+    pub mu_star: f64,
+    /// Mean of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
+    pub values: Vec<f32>,
+}
+
+impl SnapshotMaps {
+    /// Refuses maps that cannot be drawn.
+    pub(crate) fn check(&self) -> Result<(), PictureError> {
+        if self.maps.is_empty() {
+            return Err(PictureError::Nothing("map"));
+        }
+        let named = |map: &SnapshotMap| format!("the map at t* = {}", map.time_star);
+        let arrays = self.maps.iter().map(|map| (named(map), &map.values[..]));
+        self.lattice.check(&arrays.collect::<Vec<_>>())
+    }
+}
+
+impl SnapshotMap {
+    /// Letters or name, and time.
+    pub(crate) fn time_title(&self) -> String {
+        let time = format!("t* = {}", number(self.time_star, 1));
+        match self.label.as_str() {
+            "" => time,
+            // A map may be named after its time.
+            label if label.starts_with("t*") => label.to_owned(),
+            label => format!("{label}: {time}"),
+        }
+    }
+
+    /// Friction; empty if it is not known.
+    pub(crate) fn friction_title(&self) -> String {
+        if !self.mu_star.is_finite() {
+            return String::new();
+        }
+        format!("\u{3bc}* = {}", number(self.mu_star, 3))
     }
 }
 
@@ -72,7 +160,7 @@ pub(crate) struct Cells {
 
 impl Cells {
     /// The cells of a lattice of `nx` x `ny` blocks, with marks of those that are textured.
-    pub(crate) fn of(nx: usize, ny: usize, textured: &[bool]) -> Self {
+    pub(crate) fn new(nx: usize, ny: usize, textured: &[bool]) -> Self {
         let [columns, rows] = CellMeans::cells(nx, ny);
         Self {
             columns,

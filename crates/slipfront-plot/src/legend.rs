@@ -46,7 +46,13 @@ const COLUMN_GAP: f64 = 30.0;
 impl Legend {
     /// Places the names in rows between `left` and `right`, from the top of the picture down, with the title
     /// before them, or above them if it is long. Without a name there is no legend.
-    pub(crate) fn of(title: &str, names: &[(&str, LegendSample)], left: f64, right: f64) -> Self {
+    pub(crate) fn new<'n>(
+        title: &str,
+        names: impl Iterator<Item = (&'n str, LegendSample)>,
+        left: f64,
+        right: f64,
+    ) -> Self {
+        let (names, samples): (Vec<&str>, Vec<LegendSample>) = names.unzip();
         if names.is_empty() {
             return Self::default();
         }
@@ -58,14 +64,13 @@ impl Legend {
             _ => (left, 1),
         };
         let room = right - left - SAMPLE_WIDTH - NAME_GAP;
-        let whole: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
-        let texts = fitted_names(&whole, SIZE_TEXT, room);
+        let texts = fitted_names(&names, SIZE_TEXT, room);
         // Equal columns, so that names are aligned.
         let widest = texts.iter().map(Text::width).fold(0.0, f64::max) + SAMPLE_WIDTH + NAME_GAP + COLUMN_GAP;
         let columns = ((right - left + COLUMN_GAP) / widest).floor().max(1.0) as usize;
         let middle = |row: usize| MARGIN + ROW * (row as f64 + 0.5);
         let entry = |(index, text): (usize, Text)| Entry {
-            sample: names[index].1,
+            sample: samples[index],
             x: left + (index % columns) as f64 * widest,
             y: middle(first + index / columns),
             text,

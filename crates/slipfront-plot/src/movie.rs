@@ -12,7 +12,7 @@ use crate::frame::{BAR_WIDTH, bar_room, colour_bar, left_room, left_side, lower_
 use crate::friction_curve::{FrictionAxes, FrictionCurve};
 use crate::geometry::{Align, Area, CanvasPoint};
 use crate::label_placement::{Placer, around};
-use crate::lattice_map::{Cells, MARK, MIN_RATIO, block_count, check_length, draw_titles};
+use crate::lattice_map::{Cells, MARK, MIN_RATIO, SnapshotMap, SnapshotMaps, draw_titles};
 use crate::movie_colours::Colours;
 use crate::picture_error::{PictureError, check_columns};
 use crate::raster::Pixels;
@@ -20,7 +20,7 @@ use crate::series::segments;
 use crate::style::{
     BLACK, CURVES, GREY, MARGIN, RADIUS_MARKER, SIZE_TEXT, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
 };
-use crate::text::{Text, number};
+use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
 /// Size of the pictures of a movie, which are twice as wide as high.
@@ -73,35 +73,12 @@ const BELOW: f64 = 60.0;
 /// A movie of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Movie {
-    /// Blocks along x.
-    pub nx: usize,
-    /// Blocks along y.
-    pub ny: usize,
-    /// True for every mostly textured [cell](CellMeans), row by row from y = 0.
-    pub textured: Vec<bool>,
-    /// Quantity of the field, over the colour bar; the character after an underscore is a subscript.
-    pub title: String,
-    /// Values at the ends of the colour bar; values beyond are drawn as the ends.
-    pub range: [f64; 2],
+    /// A map for each picture; the title of their values is over the colour bar.
+    pub snapshots: SnapshotMaps,
     /// The curve against t*.
     pub curve: FrictionCurve,
     /// Titles of the curve's axes.
     pub axes: FrictionAxes,
-    /// Pictures in the order of time.
-    pub frames: Vec<MovieFrame>,
-}
-
-/// A picture of a movie.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MovieFrame {
-    /// Letters of the instants A-F that the picture shows, such as "A, B"; may be empty.
-    pub label: String,
-    /// Time t*.
-    pub time_star: f64,
-    /// Friction coefficient mu*.
-    pub mu_star: f64,
-    /// The mean of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
-    pub values: Vec<f32>,
 }
 
 /// A movie that can be drawn: its layout and its colours.
@@ -130,7 +107,8 @@ struct MovieLayout {
 }
 
 impl MovieLayout {
-    fn of(nx: usize, ny: usize, cells: [usize; 2], size: MovieSize) -> Self {
+    fn new(nx: usize, ny: usize, size: MovieSize) -> Self {
+        let cells = CellMeans::cells(nx, ny);
         let ratio = ny as f64 / nx as f64;
         if ratio * LONG >= 1.0 {
             let room = Area::new(MAP_LEFT, TOP, MAP_SIDE, MAP_SIDE);
@@ -162,25 +140,17 @@ impl<'a> MoviePictures<'a> {
     ///
     /// # Errors
     /// A lattice without blocks, an array of the wrong length, no picture, or no memory for one.
-    pub fn of(movie: &'a Movie, size: MovieSize) -> Result<Self, PictureError> {
-        block_count(movie.nx, movie.ny)?;
-        let [columns, rows] = CellMeans::cells(movie.nx, movie.ny);
-        if movie.frames.is_empty() {
-            return Err(PictureError::Nothing("snapshot"));
-        }
-        check_length("the texture", movie.textured.len(), columns * rows)?;
-        for frame in &movie.frames {
-            let what = format!("the map at t* = {}", frame.time_star);
-            check_length(&what, frame.values.len(), columns * rows)?;
-        }
+    pub fn new(movie: &'a Movie, size: MovieSize) -> Result<Self, PictureError> {
+        let SnapshotMaps { lattice, maps, .. } = &movie.snapshots;
+        movie.snapshots.check()?;
         let curve = &movie.curve;
         check_columns(
             &curve.label,
             ("times", curve.x.len()),
             &[("friction", curve.friction.len())],
         )?;
-        let layout = MovieLayout::of(movie.nx, movie.ny, [columns, rows], size);
-        let times = movie.frames.iter().map(|frame| frame.time_star);
+        let layout = MovieLayout::new(lattice.nx, lattice.ny, size);
+        let times = maps.iter().map(|map| map.time_star);
         let times: Vec<f64> = curve.x.iter().copied().chain(times).collect();
         let frictions: Vec<f64> = curve.friction.iter().copied().chain([0.0]).collect();
         let mu = DrawnAxis::around(&frictions, false, 0.06).placed(CURVE_BOTTOM, layout.curve_top);
@@ -190,7 +160,7 @@ impl<'a> MoviePictures<'a> {
         let mut pictures = Self {
             movie,
             size,
-            cells: Cells::of(movie.nx, movie.ny, &movie.textured),
+            cells: lattice.cells(),
             colours: Colours::default(),
             ground: Pixels::blank(width, height).ok_or_else(no_memory)?,
             layout,
@@ -217,9 +187,9 @@ impl<'a> MoviePictures<'a> {
     /// A picture: the colour of every pixel, row by row from the top.
     pub fn draw(&self, index: usize) -> Vec<u8> {
         let mut canvas = blank();
-        let frame = &self.movie.frames[index];
-        self.draw_map(&mut canvas, frame);
-        self.draw_mark(&mut canvas, frame);
+        let map = &self.movie.snapshots.maps[index];
+        self.draw_map(&mut canvas, map);
+        self.draw_mark(&mut canvas, map);
         let mut drawn = self.ground.clone();
         drawn.draw(&canvas);
         let [nx, ny] = self.size.pixels();
@@ -240,29 +210,21 @@ impl<'a> MoviePictures<'a> {
         (0..nx * ny).map(pixel).collect()
     }
 
-    fn draw_map(&self, canvas: &mut Canvas, frame: &MovieFrame) {
-        let movie = self.movie;
-        let MovieLayout { map, room, .. } = self.layout;
-        self.cells.draw(canvas, map, &frame.values, movie.range);
-        canvas.frame(map);
-        let time = format!("t* = {}", number(frame.time_star, 1));
-        let label = match frame.label.as_str() {
-            "" => time,
-            letters => format!("{letters}: {time}"),
-        };
-        let friction = if frame.mu_star.is_finite() {
-            Text::plain(&format!("\u{3bc}* = {}", number(frame.mu_star, 3)), SIZE_TEXT)
-        } else {
-            Text::default()
-        };
-        draw_titles(canvas, room, &[Text::plain(&label, SIZE_TEXT)], &friction);
+    fn draw_map(&self, canvas: &mut Canvas, map: &SnapshotMap) {
+        let area = self.layout.map;
+        let range = self.movie.snapshots.range;
+        self.cells.draw(canvas, area, &map.values, range);
+        canvas.frame(area);
+        let titles = [map.time_title(), map.friction_title()];
+        let [time, friction] = titles.map(|title| Text::plain(&title, SIZE_TEXT));
+        draw_titles(canvas, self.layout.room, &[time], &friction);
     }
 
     fn draw_bar(&self, canvas: &mut Canvas) {
-        let (movie, bar) = (self.movie, self.layout.bar);
-        colour_bar(canvas, bar, movie.range);
-        let title = Text::math(&movie.title, SIZE_TEXT);
-        let room = bar_room(movie.range, bar.height);
+        let (maps, bar) = (&self.movie.snapshots, self.layout.bar);
+        colour_bar(canvas, bar, maps.range);
+        let title = Text::math(&maps.value_title, SIZE_TEXT);
+        let room = bar_room(maps.range, bar.height);
         let start = (bar.x + room - title.width()).min(bar.x);
         canvas.text(&title, (start, bar.y - 22.0), Align::Start, BLACK);
     }
@@ -285,7 +247,7 @@ impl<'a> MoviePictures<'a> {
         let title = Text::math(&movie.axes.x, SIZE_TEXT);
         lower_side(canvas, area, &self.x.ticks(Direction::X, MAX_STEPS), &title);
         let mut placer = Placer::new(area);
-        for segment in segments(&curve.x, &curve.friction, &self.x, &self.mu) {
+        for segment in segments(curve.friction_points(), &self.x, &self.mu) {
             placer.avoid(&segment);
             canvas.polyline(segment, WIDTH_CURVE, CURVES[0]);
         }
@@ -317,12 +279,12 @@ impl<'a> MoviePictures<'a> {
     }
 
     /// Draws the mark of the curve at the instant that is shown.
-    fn draw_mark(&self, canvas: &mut Canvas, frame: &MovieFrame) {
+    fn draw_mark(&self, canvas: &mut Canvas, map: &SnapshotMap) {
         let area = self.curve_area();
-        let now = self.x.clamped(frame.time_star);
+        let now = self.x.clamped(map.time_star);
         canvas.line((now, area.y), (now, area.bottom()), WIDTH_MARK, MARK);
-        if frame.mu_star.is_finite() {
-            canvas.dot((now, self.mu.clamped(frame.mu_star)), RADIUS_MARKER, MARK);
+        if map.mu_star.is_finite() {
+            canvas.dot((now, self.mu.clamped(map.mu_star)), RADIUS_MARKER, MARK);
         }
     }
 }
@@ -351,30 +313,36 @@ fn map_area(room: Area, sides: [f64; 2], cells: [usize; 2], size: MovieSize) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lattice_map::DrawnLattice;
 
     const PIXELS: [usize; 2] = MovieSize::Usual.pixels();
 
     fn movie(nx: usize, ny: usize) -> Movie {
         let [columns, rows] = CellMeans::cells(nx, ny);
-        let frame = |k: usize| MovieFrame {
+        let map = |k: usize| SnapshotMap {
             label: if k == 1 { "A, B".to_owned() } else { String::new() },
             time_star: 10.0 * k as f64,
             mu_star: 0.1 * k as f64,
             values: (0..columns * rows).map(|cell| (cell % 7) as f32 / 7.0).collect(),
         };
         Movie {
-            nx,
-            ny,
-            textured: (0..columns * rows).map(|cell| cell % 5 == 0).collect(),
-            title: "\u{3c4}_c*".to_owned(),
-            range: [0.0, 1.0],
+            snapshots: SnapshotMaps {
+                lattice: DrawnLattice {
+                    nx,
+                    ny,
+                    block_size: 1e-6,
+                    textured: (0..columns * rows).map(|cell| cell % 5 == 0).collect(),
+                },
+                maps: (0..3).map(map).collect(),
+                value_title: "\u{3c4}_c*".to_owned(),
+                range: [0.0, 1.0],
+            },
             curve: FrictionCurve {
                 x: (0..100).map(|k| 0.3 * f64::from(k)).collect(),
                 friction: (0..100).map(|k| 0.003 * f64::from(k)).collect(),
                 ..FrictionCurve::default()
             },
             axes: FrictionAxes::default(),
-            frames: (0..3).map(frame).collect(),
         }
     }
 
@@ -387,8 +355,8 @@ mod tests {
     #[test]
     fn blocks_have_whole_pixels_of_their_colour() {
         let mut movie = movie(100, 100);
-        movie.textured.fill(false);
-        let pictures = MoviePictures::of(&movie, MovieSize::Usual).unwrap();
+        movie.snapshots.lattice.textured.fill(false);
+        let pictures = MoviePictures::new(&movie, MovieSize::Usual).unwrap();
         let pixels = pictures.draw(2);
         assert_eq!(pixels.len(), PIXELS[0] * PIXELS[1]);
         let [left, top, width, height] = halves(pictures.layout.map);
@@ -419,7 +387,7 @@ mod tests {
     #[test]
     fn the_mark_stands_at_the_instant() {
         let movie = movie(20, 10);
-        let pictures = MoviePictures::of(&movie, MovieSize::Usual).unwrap();
+        let pictures = MoviePictures::new(&movie, MovieSize::Usual).unwrap();
         let [first, last] = [0, 2].map(|index| pictures.draw(index));
         let mark = |pixels: &[u8], time_star: f64| {
             let x = pictures.x.at(time_star) as usize / MovieSize::Usual.drawn();
@@ -438,7 +406,7 @@ mod tests {
     fn every_shape_is_drawn() {
         for (nx, ny) in [(1, 1), (300, 1), (1, 300), (1000, 4), (257, 256)] {
             let movie = movie(nx, ny);
-            let pictures = MoviePictures::of(&movie, MovieSize::Usual).unwrap();
+            let pictures = MoviePictures::new(&movie, MovieSize::Usual).unwrap();
             let MovieLayout { map, room, bar, .. } = pictures.layout;
             assert!(map.x >= room.x && map.right() <= room.right(), "{nx} x {ny}");
             assert!(map.bottom() <= TOP + MAP_SIDE && map.height >= 40.0 && map.width >= 40.0);
@@ -451,7 +419,7 @@ mod tests {
     #[test]
     fn a_long_slider_fills_the_picture() {
         let movie = movie(200, 10);
-        let pictures = MoviePictures::of(&movie, MovieSize::Usual).unwrap();
+        let pictures = MoviePictures::new(&movie, MovieSize::Usual).unwrap();
         let MovieLayout { map, curve_top, .. } = pictures.layout;
         // Six pixels for each of 200 blocks.
         assert_eq!(map.width, 1200.0);
@@ -468,7 +436,7 @@ mod tests {
             (MovieSize::Usual, [800, 400]),
             (MovieSize::Large, [1600, 800]),
         ] {
-            let pictures = MoviePictures::of(&movie, size).unwrap();
+            let pictures = MoviePictures::new(&movie, size).unwrap();
             assert_eq!(size.pixels(), pixels);
             assert_eq!(pictures.draw(0).len(), pixels[0] * pixels[1]);
         }
@@ -485,14 +453,14 @@ mod tests {
                 friction: 0.01 * x,
             })
             .to_vec();
-        let pictures = MoviePictures::of(&movie, MovieSize::Usual).unwrap();
+        let pictures = MoviePictures::new(&movie, MovieSize::Usual).unwrap();
         let mut canvas = blank();
         pictures.draw_curve(&mut canvas);
         let written: Vec<&str> = canvas
             .elements
             .iter()
             .filter_map(|element| match &element.primitive {
-                crate::canvas::Primitive::Letters { text, .. } => Some(text.as_str()),
+                crate::canvas::Primitive::Letters(letters) => Some(letters.text.as_str()),
                 _ => None,
             })
             .collect();
@@ -507,15 +475,18 @@ mod tests {
         let said = |change: &dyn Fn(&mut Movie)| {
             let mut movie = movie(2, 3);
             change(&mut movie);
-            MoviePictures::of(&movie, MovieSize::Usual)
+            MoviePictures::new(&movie, MovieSize::Usual)
                 .err()
                 .unwrap()
                 .to_string()
         };
-        assert_eq!(said(&|m| m.frames.clear()), "there is no snapshot to draw");
-        assert_eq!(said(&|m| m.nx = 0), "a lattice of 0 x 3 blocks cannot be drawn");
+        assert_eq!(said(&|m| m.snapshots.maps.clear()), "there is no map to draw");
         assert_eq!(
-            said(&|m| m.frames[1].values.push(0.0)),
+            said(&|m| m.snapshots.lattice.nx = 0),
+            "a lattice of 0 x 3 blocks cannot be drawn"
+        );
+        assert_eq!(
+            said(&|m| m.snapshots.maps[1].values.push(0.0)),
             "the map at t* = 10 has 7 values instead of 6"
         );
     }

@@ -20,7 +20,7 @@ pub(crate) struct Note {
 
 impl Note {
     /// A note around `middle` in a picture of this width; an empty one takes no room.
-    pub(crate) fn of(text: &str, middle: f64, width: f64) -> Self {
+    pub(crate) fn new(text: &str, middle: f64, width: f64) -> Self {
         let room = width - 2.0 * MARGIN;
         let lines = Text::wrapped(text, SIZE_TEXT, room, MAX_LINES);
         let lines = lines.unwrap_or_else(|| vec![Text::shortened(text, SIZE_TEXT, room)]);
@@ -48,9 +48,9 @@ mod tests {
     #[test]
     fn a_note_takes_the_lines_that_it_needs() {
         let heights = ["", "short", "a note of many words that has no room in one line"]
-            .map(|text| Note::of(text, 200.0, 600.0).height / LINE);
+            .map(|text| Note::new(text, 200.0, 600.0).height / LINE);
         assert_eq!(heights, [0.0, 1.0, 2.0]);
-        let endless = Note::of(&"words ".repeat(100), 200.0, 600.0);
+        let endless = Note::new(&"words ".repeat(100), 200.0, 600.0);
         assert_eq!(endless.lines.len(), 1);
         assert!(endless.lines[0].width() <= 600.0 - 2.0 * MARGIN);
     }

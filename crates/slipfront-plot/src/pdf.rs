@@ -38,7 +38,7 @@ const FIRST_IMAGE: i32 = 10;
 /// The canvas as the bytes of a PDF file.
 pub(crate) fn pdf(canvas: &Canvas) -> Vec<u8> {
     let [width, height] = canvas.millimetres().map(|mm| (mm / 25.4 * POINTS) as f32);
-    let font = PdfFont::of(canvas);
+    let font = PdfFont::new(canvas);
     let opacities = opacities(canvas);
     let mut pdf = Pdf::new();
     pdf.catalog(CATALOG).pages(PAGES);
@@ -143,22 +143,17 @@ fn content(canvas: &Canvas, height: f32, font: &PdfFont, opacities: &[f64]) -> V
 
 fn draw(content: &mut Content, element: &Element, font: &PdfFont) {
     let [red, green, blue] = element.colour.map(|channel| f32::from(channel) / 255.0);
-    if let Primitive::Line { .. } = element.primitive {
+    if let Primitive::Line(_) = element.primitive {
         content.set_stroke_rgb(red, green, blue);
     } else {
         content.set_fill_rgb(red, green, blue);
     }
     match &element.primitive {
-        Primitive::Line {
-            points,
-            width,
-            closed,
-            dashes,
-        } => {
-            content.set_line_width(*width as f32);
-            content.set_dash_pattern(dashes.iter().map(|&dash| rounded(dash)), 0.0);
-            path(content, points);
-            if *closed {
+        Primitive::Line(line) => {
+            content.set_line_width(line.width as f32);
+            content.set_dash_pattern(line.dashes.iter().map(|&dash| rounded(dash)), 0.0);
+            path(content, &line.points);
+            if line.closed {
                 content.close_path();
             }
             content.stroke();
@@ -172,22 +167,12 @@ fn draw(content: &mut Content, element: &Element, font: &PdfFont) {
             content.rect(x, y, width, height).fill_nonzero();
         }
         Primitive::Disc { centre, radius } => disc(content, *centre, *radius),
-        Primitive::Letters {
-            text,
-            size,
-            at,
-            upwards,
-        } => {
-            let (x, y) = (rounded(at.0), rounded(at.1));
-            // Directions along the line of text and from it towards the tops of the letters, y downwards.
-            let [along, above] = if *upwards {
-                [[0.0, -1.0], [-1.0, 0.0]]
-            } else {
-                [[1.0, 0.0], [0.0, -1.0]]
-            };
-            content.begin_text().set_font(FONT, *size as f32);
+        Primitive::Letters(letters) => {
+            let (x, y) = (rounded(letters.at.0), rounded(letters.at.1));
+            let [along, above] = letters.directions();
+            content.begin_text().set_font(FONT, letters.size as f32);
             content.set_text_matrix([along[0], along[1], above[0], above[1], x, y]);
-            content.show(Str(&font.encoded(text))).end_text();
+            content.show(Str(&font.encoded(&letters.text))).end_text();
         }
     }
 }

@@ -30,12 +30,12 @@ pub(crate) struct FontObjects {
 
 impl PdfFont {
     /// The font of all texts of a canvas.
-    pub(crate) fn of(canvas: &Canvas) -> Self {
+    pub(crate) fn new(canvas: &Canvas) -> Self {
         let texts = canvas
             .elements
             .iter()
             .filter_map(|element| match &element.primitive {
-                Primitive::Letters { text, .. } => Some(text.chars()),
+                Primitive::Letters(letters) => Some(letters.text.chars()),
                 _ => None,
             });
         let mut letters: Vec<char> = texts.flatten().collect();

@@ -4,14 +4,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
+use crate::estimate::Estimate;
 use crate::frame::{LOWER_ROOM, lower_side};
 use crate::geometry::{Align, Area, CanvasPoint};
 use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
 use crate::picture::Picture;
 use crate::picture_error::PictureError;
-use crate::response::{Response, check_curves};
-use crate::series::{cross, interval, marker};
+use crate::response::Response;
+use crate::series::{cross, marker};
 use crate::size::PictureSize;
 use crate::style::{
     BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, Rgb, SIZE_TEXT, WIDTH_FRAME, WIDTH_LEADER, WIDTH_MARK,
@@ -56,31 +57,30 @@ pub struct Polar {
 ///
 /// # Errors
 ///
-/// No curve, a curve whose columns differ in length, or a size that leaves no room for the curves.
+/// No curve, or a size that leaves no room for the curves.
 pub fn polar(polar: &Polar, size: PictureSize) -> Result<Picture, PictureError> {
-    check_curves(&polar.curves, "directions")?;
-    let rounds: Vec<Round> = polar.curves.iter().map(Round::of).collect();
-    let tops = rounds.iter().flat_map(|round| round.parts.iter().flatten());
-    let largest = tops.map(|point| point.high.max(point.mean)).fold(0.0, f64::max);
-    let largest = if largest > 0.0 { largest } else { 1.0 };
-    let bottoms = rounds.iter().flat_map(|round| round.parts.iter().flatten());
-    let smallest = bottoms
-        .map(|point| point.low.min(point.mean))
-        .fold(largest, f64::min);
+    if polar.curves.is_empty() {
+        return Err(PictureError::Nothing("curve"));
+    }
+    let rounds: Vec<Round> = polar.curves.iter().map(Round::new).collect();
+    let points = || rounds.iter().flat_map(|round| round.parts.iter().flatten());
+    let highest = points()
+        .map(|point| point.high.max(point.mean))
+        .fold(0.0, f64::max);
+    let largest = if highest > 0.0 { highest } else { 1.0 };
+    let lows = points().map(|point| point.low.min(point.mean));
+    let smallest = lows.fold(largest, f64::min);
     let start = centre_value(smallest, largest);
 
     let width = size.roomy_width(COLUMN_WIDTH)?;
     let centre_x = (0.5 * width).round();
     let widest = (0.5 * width - BESIDE).round();
     let [left, right] = [centre_x - widest, centre_x + widest];
-    let several = rounds.len() > 1;
-    let named = polar.curves.iter().filter(|_| several);
-    let names: Vec<_> = named
-        .map(|curve| (curve.label.as_str(), LegendSample::Marker))
-        .collect();
-    let legend = Legend::of(&polar.legend_title, &names, left, right);
+    let named = polar.curves.iter().filter(|_| rounds.len() > 1);
+    let names = named.map(|curve| (curve.label.as_str(), LegendSample::Marker));
+    let legend = Legend::new(&polar.legend_title, names, left, right);
     let numbers = f64::from(SIZE_TEXT) + GAP + MARGIN;
-    let note = Note::of(&with_centre(&polar.note, start), centre_x, width);
+    let note = Note::new(&with_centre(&polar.note, start), centre_x, width);
     let others = legend.height + numbers + BELOW + LOWER_ROOM + note.height;
     let room = size.panel(2.0 * widest, others, 1)?;
     let reach = widest.min(0.5 * room);
@@ -158,10 +158,10 @@ struct RoundPoint {
 }
 
 impl Round {
-    fn of(curve: &Response) -> Self {
-        let point = |index: usize| {
-            let (degrees, mean) = (curve.x[index].rem_euclid(360.0), curve.mean[index]);
-            let (low, high) = interval(mean, curve.low[index], curve.high[index]).unwrap_or((mean, mean));
+    fn new(curve: &Response) -> Self {
+        let point = |(degrees, value): &(f64, Estimate)| {
+            let (degrees, mean) = (degrees.rem_euclid(360.0), value.mean);
+            let [low, high] = value.interval().unwrap_or([mean, mean]);
             let there = (drawable(mean) && mean >= 0.0).then(|| RoundPoint {
                 degrees,
                 mean,
@@ -170,8 +170,8 @@ impl Round {
             });
             (degrees, there)
         };
-        let indices = (0..curve.x.len()).filter(|&index| drawable(curve.x[index]));
-        let mut all: Vec<(f64, Option<RoundPoint>)> = indices.map(point).collect();
+        let points = curve.points.iter().filter(|(degrees, _)| drawable(*degrees));
+        let mut all: Vec<(f64, Option<RoundPoint>)> = points.map(point).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         // 0 and 360 degrees are one direction.
         all.dedup_by(|later, first| {
@@ -293,21 +293,18 @@ impl Ring {
             }
         }
     }
-}
 
-impl Ring {
     /// Draws the crosses of marked points; a point without a mean has its cross on the largest circle.
     fn draw_crosses(&self, canvas: &mut Canvas, curve: &Response) {
-        for point in (0..curve.x.len()).filter(|&point| curve.is_crossed(point) && drawable(curve.x[point])) {
-            let (degrees, mean) = (curve.x[point], curve.mean[point]);
-            cross(
-                canvas,
-                if drawable(mean) && mean >= 0.0 {
-                    self.at(degrees, mean)
-                } else {
-                    self.around(degrees, self.reach)
-                },
-            );
+        let points = curve.points.iter();
+        for (degrees, Estimate { mean, .. }) in points.filter(|(x, value)| value.crossed && drawable(*x)) {
+            let is_drawn = drawable(*mean) && *mean >= 0.0;
+            let radius = if is_drawn {
+                self.radius.clamped(*mean)
+            } else {
+                self.reach
+            };
+            cross(canvas, self.around(*degrees, radius));
         }
     }
 }
@@ -317,14 +314,11 @@ mod tests {
     use super::*;
 
     fn curve(label: &str, directions: &[f64], mean: f64) -> Response {
-        let all = |value: f64| vec![value; directions.len()];
+        let value = Estimate::between(mean - 0.1, mean, mean + 0.1);
         Response {
             label: label.to_string(),
-            x: directions.to_vec(),
-            mean: all(mean),
-            low: all(mean - 0.1),
-            high: all(mean + 0.1),
-            ..Response::default()
+            points: directions.iter().map(|degrees| (*degrees, value)).collect(),
+            line: false,
         }
     }
 
@@ -344,16 +338,16 @@ mod tests {
 
     #[test]
     fn directions_that_go_all_the_way_round_are_closed() {
-        let is_closed = |directions: &[f64]| Round::of(&curve("", directions, 0.5)).is_closed;
+        let is_closed = |directions: &[f64]| Round::new(&curve("", directions, 0.5)).is_closed;
         assert!(is_closed(&[0.0, 90.0, 180.0, 270.0]));
         assert!(is_closed(&[-180.0, -60.0, 60.0, 180.0]));
         assert!(is_closed(&[0.0, 120.0, 240.0, 360.0]));
         assert!(!is_closed(&[0.0, 30.0, 60.0, 90.0]));
         assert!(!is_closed(&[0.0, 180.0]));
         let mut gap = curve("", &[0.0, 90.0, 180.0, 270.0], 0.5);
-        gap.mean[2] = f64::NAN;
+        gap.points[2].1.mean = f64::NAN;
         // The gap is where the value is missing: the part goes on through 0 degrees.
-        let round = Round::of(&gap);
+        let round = Round::new(&gap);
         assert!(!round.is_closed);
         let degrees = |round: &Round| -> Vec<Vec<f64>> {
             let parts = round.parts.iter();
@@ -362,12 +356,12 @@ mod tests {
                 .collect()
         };
         assert_eq!(degrees(&round), [[270.0, 0.0, 90.0]]);
-        gap.mean[0] = -1.0;
-        assert_eq!(degrees(&Round::of(&gap)), [[90.0], [270.0]]);
+        gap.points[0].1.mean = -1.0;
+        assert_eq!(degrees(&Round::new(&gap)), [[90.0], [270.0]]);
         // 0 degrees has its value at 360.
         let mut twice = curve("", &[0.0, 120.0, 240.0, 360.0], 0.5);
-        twice.mean[0] = f64::NAN;
-        assert!(Round::of(&twice).is_closed);
+        twice.points[0].1.mean = f64::NAN;
+        assert!(Round::new(&twice).is_closed);
     }
 
     /// Directions and values have their places: 0 degrees is to the right, 90 upwards, and the radius is in
@@ -424,10 +418,12 @@ mod tests {
         let start = centre_value(0.9, 0.9);
         assert!((0.7..=0.81).contains(&start), "{start}");
         let all = [0.0, 90.0, 180.0, 270.0];
-        let narrow = |mean: f64| Response {
-            low: vec![mean - 0.01; 4],
-            high: vec![mean + 0.01; 4],
-            ..curve("", &all, mean)
+        let narrow = |mean: f64| {
+            let mut curve = curve("", &all, mean);
+            for (_, value) in &mut curve.points {
+                *value = Estimate::between(mean - 0.01, mean, mean + 0.01);
+            }
+            curve
         };
         assert!(svg(&[narrow(0.8)]).contains("the centre is 0."));
         assert!(!svg(&[narrow(0.8), narrow(0.1)]).contains("the centre is"));
@@ -437,10 +433,10 @@ mod tests {
     #[test]
     fn points_that_are_not_whole_are_crossed() {
         let plain = curve("", &[0.0, 90.0, 180.0, 270.0], 0.5);
-        let crossed = Response {
-            crossed: vec![true, false, true, false],
-            ..plain.clone()
-        };
+        let mut crossed = plain.clone();
+        for index in [0, 2] {
+            crossed.points[index].1.crossed = true;
+        }
         let lines = |curve: &Response| svg(std::slice::from_ref(curve)).matches("fill=\"none\"").count();
         assert_eq!(lines(&crossed), lines(&plain) + 4);
     }
@@ -457,16 +453,6 @@ mod tests {
         ] {
             svg(&[curve]);
         }
-        let mut bad = curve("a", &[0.0], 1.0);
-        bad.low.clear();
-        let of = |curves: Vec<Response>| Polar {
-            curves,
-            ..Polar::default()
-        };
-        let said = polar(&of(vec![bad]), PictureSize::default())
-            .unwrap_err()
-            .to_string();
-        assert_eq!(said, "curve `a` has 1 directions but 0 values of its low");
-        assert!(polar(&of(Vec::new()), PictureSize::default()).is_err());
+        assert!(polar(&Polar::default(), PictureSize::default()).is_err());
     }
 }

@@ -6,7 +6,7 @@ use tiny_skia::{
     Rect, Stroke, StrokeDash, Transform,
 };
 
-use crate::canvas::{Canvas, Element, Primitive};
+use crate::canvas::{Canvas, Element, Letters, Primitive};
 use crate::color_image::{Image, palette};
 use crate::font;
 use crate::geometry::{Area, CanvasPoint};
@@ -62,7 +62,7 @@ fn draw(pixmap: &mut Pixmap, element: &Element, scale: f64) {
     let mut paint = Paint::default();
     paint.set_color_rgba8(red, green, blue, (element.opacity * 255.0).round() as u8);
     let path = match &element.primitive {
-        Primitive::Line { points, closed, .. } => path(points, *closed),
+        Primitive::Line(line) => path(&line.points, line.closed),
         Primitive::Polygon(points) => path(points, true),
         Primitive::Rectangle(area) => {
             let [x, y, width, height] = area.sides().map(|length| length as f32);
@@ -71,21 +71,16 @@ fn draw(pixmap: &mut Pixmap, element: &Element, scale: f64) {
         Primitive::Disc { centre, radius } => {
             PathBuilder::from_circle(centre.0 as f32, centre.1 as f32, *radius as f32)
         }
-        Primitive::Letters {
-            text,
-            size,
-            at,
-            upwards,
-        } => letters(text, f64::from(*size), *at, *upwards),
+        Primitive::Letters(letters) => outlines(letters),
     };
     let Some(path) = path else { return };
     let larger = Transform::from_scale(scale as f32, scale as f32);
-    if let Primitive::Line { width, dashes, .. } = &element.primitive {
+    if let Primitive::Line(line) = &element.primitive {
         let stroke = Stroke {
-            width: *width as f32,
+            width: line.width as f32,
             line_cap: LineCap::Butt,
             line_join: LineJoin::Round,
-            dash: StrokeDash::new(dashes.iter().map(|&length| length as f32).collect(), 0.0),
+            dash: StrokeDash::new(line.dashes.iter().map(|&length| length as f32).collect(), 0.0),
             ..Stroke::default()
         };
         pixmap.stroke_path(&path, &paint, &stroke, larger, None);
@@ -111,25 +106,21 @@ fn path(points: &[CanvasPoint], closed: bool) -> Option<Path> {
 }
 
 /// The outlines of letters on a baseline.
-fn letters(text: &str, size: f64, at: CanvasPoint, upwards: bool) -> Option<Path> {
+fn outlines(letters: &Letters) -> Option<Path> {
     let mut path = PathBuilder::new();
-    let scale = size as f32;
-    // Steps along the line and above it, y downwards.
-    let (along, above) = if upwards {
-        ([0.0, -1.0], [-1.0, 0.0])
-    } else {
-        ([1.0, 0.0], [0.0, -1.0])
-    };
+    let scale = letters.size as f32;
+    let [along, above] = letters.directions();
     let mut pen = 0.0;
-    for character in text.chars() {
-        let origin = [at.0 + pen * along[0], at.1 + pen * along[1]];
+    for character in letters.text.chars() {
+        let origin = [
+            letters.at.0 + pen * f64::from(along[0]),
+            letters.at.1 + pen * f64::from(along[1]),
+        ];
         font::draw(character, &mut path, |right, up| {
-            let place = |axis: usize| {
-                origin[axis] as f32 + scale * (right * along[axis] as f32 + up * above[axis] as f32)
-            };
+            let place = |axis: usize| origin[axis] as f32 + scale * (right * along[axis] + up * above[axis]);
             (place(0), place(1))
         });
-        pen += font::advance(character) * size;
+        pen += font::advance(character) * f64::from(letters.size);
     }
     path.finish()
 }
@@ -148,9 +139,7 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image, scale: f64) {
     let colours = palette();
     let columns = cells(image.columns, width);
     let rows = cells(image.rows(), height);
-    let mut row_sums = vec![[0; 3]; width];
-    let mut sums = row_sums.clone();
-    let (mut above, mut summed) = (None, None);
+    let mut above = None;
     for (y, rows) in rows.chunks_exact(SAMPLES).enumerate() {
         let start = (top + y) * pitch + left;
         let pixels = pixmap.pixels_mut();
@@ -159,33 +148,27 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image, scale: f64) {
             pixels.copy_within(start - pitch..start - pitch + width, start);
             continue;
         }
-        sums.fill([0; 3]);
-        for &row in rows {
-            if summed.replace(row) != Some(row) {
-                let levels = &image.levels[row * image.columns..];
-                sum_row(&mut row_sums, levels, &columns, &colours);
+        let columns = columns.chunks_exact(SAMPLES);
+        for (pixel, columns) in pixels[start..start + width].iter_mut().zip(columns) {
+            *pixel = mean_colour(image, rows, columns, &colours);
+        }
+    }
+}
+
+/// The mean of the colours of the samples of a pixel, which lie in these rows and columns of an image.
+fn mean_colour(image: &Image, rows: &[usize], columns: &[usize], colours: &[Rgb]) -> PremultipliedColorU8 {
+    let mut sums = [0_u16; 3];
+    for &row in rows {
+        let levels = &image.levels[row * image.columns..];
+        for &column in columns {
+            let colour = colours[usize::from(levels[column])];
+            for (sum, channel) in sums.iter_mut().zip(colour) {
+                *sum += u16::from(channel);
             }
-            add(&mut sums, &row_sums);
-        }
-        for (pixel, sum) in pixels[start..start + width].iter_mut().zip(&sums) {
-            *pixel = mean_colour(sum);
         }
     }
-}
-
-/// Adds the sums of one row of samples to those of a row of pixels.
-fn add(sums: &mut [[u16; 3]], row_sums: &[[u16; 3]]) {
-    for (sum, row_sum) in sums.iter_mut().zip(row_sums) {
-        for (channel, part) in sum.iter_mut().zip(row_sum) {
-            *channel += part;
-        }
-    }
-}
-
-/// The mean of the colours of all samples of a pixel, from their sum.
-fn mean_colour(sum: &[u16; 3]) -> PremultipliedColorU8 {
     let count = (SAMPLES * SAMPLES) as u16;
-    let [red, green, blue] = sum.map(|channel| ((channel + count / 2) / count) as u8);
+    let [red, green, blue] = sums.map(|sum| ((sum + count / 2) / count) as u8);
     ColorU8::from_rgba(red, green, blue, 255).premultiply()
 }
 
@@ -194,19 +177,6 @@ fn cells(count: usize, pixels: usize) -> Vec<usize> {
     let samples = pixels * SAMPLES;
     let cell = |sample| (2 * sample + 1) * count / (2 * samples);
     (0..samples).map(cell).collect()
-}
-
-/// Adds up the colours of the samples of every pixel of a row.
-fn sum_row(sums: &mut [[u16; 3]], levels: &[u8], columns: &[usize], colours: &[Rgb]) {
-    for (sum, columns) in sums.iter_mut().zip(columns.chunks_exact(SAMPLES)) {
-        *sum = [0; 3];
-        for &column in columns {
-            let colour = colours[usize::from(levels[column])];
-            for (channel, value) in sum.iter_mut().zip(colour) {
-                *channel += u16::from(value);
-            }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -4,16 +4,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::axis::{DrawnAxis, drawable};
 use crate::canvas::Canvas;
-use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks, upright_room};
-use crate::geometry::Area;
+use crate::estimate::Estimate;
+use crate::frame::{LOWER_ROOM, left_room, numbered_sides, right_end};
+use crate::geometry::{Area, CanvasPoint};
 use crate::legend::{Legend, LegendSample};
 use crate::note::Note;
 use crate::picture::Picture;
-use crate::picture_error::{PictureError, check_columns};
-use crate::series::{cross, error_bar, interval, marker, segments};
+use crate::picture_error::PictureError;
+use crate::series::{cross, error_bar, marker, segments};
 use crate::size::PictureSize;
 use crate::style::{COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, WIDTH_LEADER, curve_style};
-use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
 const HEIGHT: f64 = 560.0;
@@ -44,36 +44,12 @@ pub struct Responses {
 pub struct Response {
     /// Name of the curve in the legend; shown only if there are other curves.
     pub label: String,
-    /// Abscissae of the points, in any order.
-    pub x: Vec<f64>,
-    /// The mean at every point; NaN leaves a gap.
-    pub mean: Vec<f64>,
-    /// The lower end of every mean's confidence interval; NaN where there is none.
-    pub low: Vec<f64>,
-    /// The upper end of every mean's confidence interval; NaN where there is none.
-    pub high: Vec<f64>,
-    /// Marks of points that get a cross, on their marker or, without a mean, on the lower side; may be empty.
-    #[serde(default)]
-    pub crossed: Vec<bool>,
+    /// Abscissae and values of the points, in any order. A point without a mean leaves a gap, and has its
+    /// cross on the lower side.
+    pub points: Vec<(f64, Estimate)>,
     /// Whether the curve is a formula or a level rather than a result: it is drawn as a line through its
     /// points, without markers.
     pub line: bool,
-}
-
-/// Refuses an empty list of curves, and a curve whose columns differ in length; `counted` names its
-/// abscissae.
-pub(crate) fn check_curves(curves: &[Response], counted: &'static str) -> Result<(), PictureError> {
-    if curves.is_empty() {
-        return Err(PictureError::Nothing("curve"));
-    }
-    curves.iter().try_for_each(|curve| {
-        let columns = [
-            ("its mean", curve.mean.len()),
-            ("its low", curve.low.len()),
-            ("its high", curve.high.len()),
-        ];
-        check_columns(&curve.label, (counted, curve.x.len()), &columns)
-    })
 }
 
 /// Draws means with their confidence bands, usually as wide as a journal's column (85 mm).
@@ -83,13 +59,17 @@ pub(crate) fn check_curves(curves: &[Response], counted: &'static str) -> Result
 ///
 /// # Errors
 ///
-/// No curve, a curve whose columns differ in length, or a size that leaves no room for the curves.
+/// No curve, or a size that leaves no room for the curves.
 pub fn response(responses: &Responses, size: PictureSize) -> Result<Picture, PictureError> {
-    check_curves(&responses.curves, "points")?;
+    if responses.curves.is_empty() {
+        return Err(PictureError::Nothing("curve"));
+    }
     let curves: Vec<Response> = responses.curves.iter().map(sorted).collect();
-    let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
+    let points = || curves.iter().flat_map(|curve| &curve.points);
+    let xs: Vec<f64> = points().map(|(x, _)| *x).collect();
     let x = DrawnAxis::around(&xs, responses.log_x, 0.04);
-    let ys: Vec<f64> = curves.iter().flat_map(values).collect();
+    let ys = points().flat_map(|(_, value)| [value.mean, value.low, value.high]);
+    let ys: Vec<f64> = ys.collect();
     let y = DrawnAxis::around(&ys, responses.log_y, 0.06);
 
     let width = size.roomy_width(COLUMN_WIDTH)?;
@@ -105,16 +85,24 @@ pub fn response(responses: &Responses, size: PictureSize) -> Result<Picture, Pic
         }
     };
     let named = curves.iter().filter(|_| curves.len() > 1);
-    let names: Vec<_> = named.map(|curve| (curve.label.as_str(), sample(curve))).collect();
-    let legend = Legend::of(&responses.legend_title, &names, left, right);
-    let note = Note::of(&responses.note, 0.5 * (left + right), width);
+    let names = named.map(|curve| (curve.label.as_str(), sample(curve)));
+    let legend = Legend::new(&responses.legend_title, names, left, right);
+    let note = Note::new(&responses.note, 0.5 * (left + right), width);
     let top = MARGIN + legend.height;
     let height = size.panel(HEIGHT, top + LOWER_ROOM + note.height, 1)?;
     let area = Area::new(left, top, right - left, height);
     let (x, y) = (x.placed(left, right), y.placed(area.bottom(), area.y));
 
     let mut canvas = Canvas::sized(width, area.bottom() + LOWER_ROOM + note.height, size);
-    draw_sides(&mut canvas, area, &x, &y, responses);
+    numbered_sides(
+        &mut canvas,
+        area,
+        [&x, &y],
+        [&responses.x_title, &responses.y_title],
+    );
+    if !y.is_log && y.lo < 0.0 && y.hi > 0.0 {
+        canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
+    }
     note.draw(&mut canvas);
     legend.draw(&mut canvas);
     draw_curves(&mut canvas, &x, &y, &curves);
@@ -125,34 +113,23 @@ pub fn response(responses: &Responses, size: PictureSize) -> Result<Picture, Pic
 
 /// The curve with its points sorted by x, and with intervals that are complete or NaN.
 fn sorted(curve: &Response) -> Response {
-    let mut order: Vec<usize> = (0..curve.x.len()).collect();
-    order.retain(|&index| drawable(curve.x[index]));
-    order.sort_by(|&a, &b| curve.x[a].total_cmp(&curve.x[b]));
-    let ends = |&index: &usize| {
-        interval(curve.mean[index], curve.low[index], curve.high[index]).unwrap_or((f64::NAN, f64::NAN))
-    };
-    let (low, high) = order.iter().map(ends).unzip();
-    Response {
-        label: curve.label.clone(),
-        x: order.iter().map(|&index| curve.x[index]).collect(),
-        mean: order.iter().map(|&index| curve.mean[index]).collect(),
-        low,
-        high,
-        crossed: order.iter().map(|&index| curve.is_crossed(index)).collect(),
-        line: curve.line,
+    let mut sorted = curve.clone();
+    sorted.points.retain(|(x, _)| drawable(*x));
+    sorted.points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (_, value) in &mut sorted.points {
+        [value.low, value.high] = value.interval().unwrap_or([f64::NAN; 2]);
     }
+    sorted
 }
 
 impl Response {
     /// The curve through `values` at the abscissae `x`, without intervals.
     pub fn of_values(label: &str, x: &[f64], values: &[f64]) -> Self {
+        let values = values.iter().map(|&mean| Estimate::exact(mean));
         Self {
             label: label.to_owned(),
-            x: x.to_vec(),
-            mean: values.to_vec(),
-            low: vec![f64::NAN; x.len()],
-            high: vec![f64::NAN; x.len()],
-            ..Self::default()
+            points: x.iter().copied().zip(values).collect(),
+            line: false,
         }
     }
 
@@ -165,30 +142,9 @@ impl Response {
         }
     }
 
-    /// Whether a point is marked by a cross.
-    pub(crate) fn is_crossed(&self, point: usize) -> bool {
-        self.crossed.get(point).copied().unwrap_or(false)
-    }
-}
-
-/// All values that the y axis must hold.
-fn values(curve: &Response) -> impl Iterator<Item = f64> {
-    [&curve.mean, &curve.low, &curve.high]
-        .into_iter()
-        .flatten()
-        .copied()
-}
-
-/// Draws ticks, numbers and titles, and a line at zero.
-fn draw_sides(canvas: &mut Canvas, area: Area, x: &DrawnAxis, y: &DrawnAxis, responses: &Responses) {
-    let title = Text::fitted(&responses.y_title, upright_room(area, canvas.height));
-    left_side(canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
-    short_ticks(canvas, area, Direction::Y, &y.short_ticks());
-    short_ticks(canvas, area, Direction::X, &x.short_ticks());
-    let title = Text::fitted(&responses.x_title, area.width);
-    lower_side(canvas, area, &x.ticks(Direction::X, MAX_STEPS), &title);
-    if !y.is_log && y.lo < 0.0 && y.hi > 0.0 {
-        canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
+    /// Parts without a gap of the line through the means or the ends of the intervals.
+    fn segments(&self, of: fn(&Estimate) -> f64, x: &DrawnAxis, y: &DrawnAxis) -> Vec<Vec<CanvasPoint>> {
+        segments(self.points.iter().map(|(at, value)| (*at, of(value))), x, y)
     }
 }
 
@@ -197,8 +153,8 @@ fn draw_curves(canvas: &mut Canvas, x: &DrawnAxis, y: &DrawnAxis, curves: &[Resp
     let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
     let colour = |index: usize| curve_style(index).colour;
     for (index, curve) in curves.iter().enumerate() {
-        let lows = segments(&curve.x, &curve.low, x, y);
-        let highs = segments(&curve.x, &curve.high, x, y);
+        let lows = curve.segments(|value| value.low, x, y);
+        let highs = curve.segments(|value| value.high, x, y);
         for (low, high) in lows.into_iter().zip(highs) {
             if let ([low], [high]) = (&low[..], &high[..]) {
                 error_bar(canvas, low.0, low.1, high.1, colour(index));
@@ -209,14 +165,14 @@ fn draw_curves(canvas: &mut Canvas, x: &DrawnAxis, y: &DrawnAxis, curves: &[Resp
         }
     }
     for (index, curve) in curves.iter().enumerate() {
-        for segment in segments(&curve.x, &curve.mean, x, y) {
+        for segment in curve.segments(|value| value.mean, x, y) {
             if segment.len() > 1 {
                 canvas.curve(segment, curve_style(index));
             }
         }
     }
     for (index, curve) in curves.iter().enumerate().filter(|(_, curve)| !curve.line) {
-        for point in segments(&curve.x, &curve.mean, x, y).concat() {
+        for point in curve.segments(|value| value.mean, x, y).concat() {
             marker(canvas, index, point, RADIUS_MARKER, colour(index));
         }
     }
@@ -226,15 +182,14 @@ fn draw_curves(canvas: &mut Canvas, x: &DrawnAxis, y: &DrawnAxis, curves: &[Resp
 fn draw_crosses(canvas: &mut Canvas, area: Area, x: &DrawnAxis, y: &DrawnAxis, curves: &[Response]) {
     /// Height above the lower side of the cross of a point without a mean.
     const LIFT: f64 = 14.0;
-    for curve in curves {
-        for point in (0..curve.x.len()).filter(|&point| curve.is_crossed(point)) {
-            let height = if drawable(curve.mean[point]) {
-                y.clamped(curve.mean[point])
-            } else {
-                area.bottom() - LIFT
-            };
-            cross(canvas, (x.at(curve.x[point]), height));
-        }
+    let points = curves.iter().flat_map(|curve| &curve.points);
+    for (at, value) in points.filter(|(_, value)| value.crossed) {
+        let height = if drawable(value.mean) {
+            y.clamped(value.mean)
+        } else {
+            area.bottom() - LIFT
+        };
+        cross(canvas, (x.at(*at), height));
     }
 }
 
@@ -244,14 +199,13 @@ mod tests {
 
     /// A curve with intervals of 0.1 to both sides.
     fn curve(label: &str, points: &[(f64, f64)]) -> Response {
-        let (x, mean): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+        let points = points.iter();
         Response {
             label: label.to_string(),
-            x,
-            low: mean.iter().map(|mean| mean - 0.1).collect(),
-            high: mean.iter().map(|mean| mean + 0.1).collect(),
-            mean,
-            ..Response::default()
+            points: points
+                .map(|&(x, mean)| (x, Estimate::between(mean - 0.1, mean, mean + 0.1)))
+                .collect(),
+            line: false,
         }
     }
 
@@ -326,12 +280,14 @@ mod tests {
         let points: Vec<(f64, f64)> = (0..7).map(|i| (f64::from(i), 0.1 * f64::from(i))).collect();
         let mut curve = curve("", &points);
         assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
-        curve.mean[3] = f64::NAN;
+        curve.points[3].1.mean = f64::NAN;
         assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 2);
         // The last point alone has an error bar.
-        curve.low[5] = f64::NAN;
+        curve.points[5].1.low = f64::NAN;
         assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
-        curve.high.fill(f64::NAN);
+        for (_, value) in &mut curve.points {
+            value.high = f64::NAN;
+        }
         assert_eq!(bands(&svg(&[curve])), 0);
     }
 
@@ -358,11 +314,11 @@ mod tests {
     #[test]
     fn points_that_are_not_whole_are_crossed() {
         let mut plain = curve("", &[(1.0, 0.3), (2.0, 0.5), (3.0, 0.4)]);
-        plain.mean[1] = f64::NAN;
-        let crossed = Response {
-            crossed: vec![true, true, false],
-            ..plain.clone()
-        };
+        plain.points[1].1.mean = f64::NAN;
+        let mut crossed = plain.clone();
+        for (_, value) in &mut crossed.points[..2] {
+            value.crossed = true;
+        }
         let lines = |curve: &Response| svg(std::slice::from_ref(curve)).matches("fill=\"none\"").count();
         assert_eq!(lines(&crossed), lines(&plain) + 4);
     }
@@ -370,9 +326,9 @@ mod tests {
     #[test]
     fn an_interval_is_held_whole() {
         let mut wide = curve("", &[(1.0, 0.5)]);
-        (wide.low[0], wide.high[0]) = (-3.0, 7.0);
-        let curve = sorted(&wide);
-        assert!(values(&curve).any(|v| v == -3.0) && values(&curve).any(|v| v == 7.0));
+        (wide.points[0].1.low, wide.points[0].1.high) = (-3.0, 7.0);
+        let drawn = svg(&[wide]);
+        assert!(drawn.contains(">6</text>") && drawn.contains(">\u{2212}2</text>"));
     }
 
     #[test]
@@ -400,13 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_of_different_length_are_refused() {
-        let mut bad = curve("a", &[(0.0, 0.0), (1.0, 1.0)]);
-        bad.high.pop();
-        let error = response(&responses(&[bad], false), PictureSize::default())
-            .unwrap_err()
-            .to_string();
-        assert_eq!(error, "curve `a` has 2 points but 1 values of its high");
+    fn a_picture_has_a_curve() {
         let error = response(&responses(&[], false), PictureSize::default())
             .unwrap_err()
             .to_string();

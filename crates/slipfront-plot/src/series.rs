@@ -9,12 +9,16 @@ use crate::style::{BLACK, Rgb, WHITE, WIDTH_MARK};
 const MAX_POINTS: usize = 4000;
 
 /// A curve in pixels: one segment for every stretch without a gap.
-pub(crate) fn segments(xs: &[f64], ys: &[f64], x: &DrawnAxis, y: &DrawnAxis) -> Vec<Vec<CanvasPoint>> {
-    let points: Vec<CanvasPoint> = xs.iter().copied().zip(ys.iter().copied()).collect();
-    let pixel = |&(at, value): &CanvasPoint| (x.at(at), y.clamped(value));
-    let pixels = |segment: &[CanvasPoint]| {
+pub(crate) fn segments(
+    points: impl Iterator<Item = (f64, f64)>,
+    x: &DrawnAxis,
+    y: &DrawnAxis,
+) -> Vec<Vec<CanvasPoint>> {
+    let points: Vec<(f64, f64)> = points.collect();
+    let pixel = |&(at, value): &(f64, f64)| (x.at(at), y.clamped(value));
+    let pixels = |segment: &[(f64, f64)]| {
         let pixels: Vec<CanvasPoint> = segment.iter().map(pixel).collect();
-        let is_long = xs.len() > MAX_POINTS;
+        let is_long = points.len() > MAX_POINTS;
         if is_long { thinned(&pixels) } else { pixels }
     };
     let segments = points.split(|&(at, value)| !drawable(at) || !drawable(value));
@@ -68,12 +72,6 @@ pub(crate) fn cross(canvas: &mut Canvas, (x, y): CanvasPoint) {
     }
 }
 
-/// The lower and upper end of the confidence interval around a mean, if all three are numbers.
-pub(crate) fn interval(mean: f64, low: f64, high: f64) -> Option<(f64, f64)> {
-    let is_known = [mean, low, high].into_iter().all(drawable);
-    is_known.then(|| (low.min(high), low.max(high)))
-}
-
 /// Draws an error bar from one pixel of y to another.
 pub(crate) fn error_bar(canvas: &mut Canvas, x: f64, low: f64, high: f64, colour: Rgb) {
     /// Length of the lines across the ends to each side.
@@ -102,8 +100,8 @@ mod tests {
     #[test]
     fn a_missing_value_leaves_a_gap() {
         let axis = DrawnAxis::linear(0.0, 4.0).placed(0.0, 4.0);
-        let times = [0.0, 1.0, 2.0, 3.0, 4.0];
-        let parts = segments(&times, &[0.0, 1.0, f64::NAN, 3.0, 4.0], &axis, &axis);
+        let points = [(0.0, 0.0), (1.0, 1.0), (2.0, f64::NAN), (3.0, 3.0), (4.0, 4.0)];
+        let parts = segments(points.into_iter(), &axis, &axis);
         assert_eq!(parts, [[(0.0, 0.0), (1.0, 1.0)], [(3.0, 3.0), (4.0, 4.0)]]);
     }
 }

@@ -2,19 +2,17 @@
 
 use crate::axis::DrawnAxis;
 use crate::canvas::Canvas;
-use crate::cell_means::CellMeans;
 use crate::color_bar::{ABOVE, ColourBar};
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side};
 use crate::geometry::Area;
 use crate::lattice_map::{
-    Cells, MIN_MAP, MIN_RATIO, NOTE_ROOM, TITLE_ROOM, block_count, check_block_size, check_length,
-    draw_titles, unit_of,
+    MIN_MAP, MIN_RATIO, NOTE_ROOM, SnapshotMap, SnapshotMaps, TITLE_ROOM, draw_titles, unit_of,
 };
 use crate::picture::Picture;
 use crate::picture_error::PictureError;
 use crate::size::PictureSize;
 use crate::style::{MARGIN, SIZE_TEXT, TEXT_WIDTH};
-use crate::text::{Text, number};
+use crate::text::Text;
 use crate::ticks::{Direction, Tick};
 
 const GAP: f64 = 30.0;
@@ -30,44 +28,10 @@ const MIN_RATIO_WIDE: f64 = 1.0 / 12.0;
 /// Length of a side below which it has fewer numbers.
 const SHORT_SIDE: f64 = 130.0;
 
-/// One map.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StressMap {
-    /// Letter or name of the map.
-    pub label: String,
-    /// Time t* of the map.
-    pub time_star: f64,
-    /// mu* at that time; not written if NaN.
-    pub mu_star: f64,
-    /// Mean of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
-    pub values: Vec<f32>,
-}
-
-/// Maps of one lattice.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StressMaps {
-    /// Blocks along x.
-    pub nx: usize,
-    /// Blocks along y.
-    pub ny: usize,
-    /// Edge of a block, in metres.
-    pub block_size: f64,
-    /// True for every mostly textured [cell](CellMeans), row by row from y = 0.
-    pub textured: Vec<bool>,
-    /// The maps, in the order in which they are drawn.
-    pub maps: Vec<StressMap>,
-    /// Quantity of the maps' values, next to the colour bar; the letter after an underscore is a subscript.
-    pub value_title: String,
-    /// Values at the ends of the colour bar; values beyond are drawn as the ends.
-    pub range: [f64; 2],
-    /// Whether mu* is the torque of a rotating drive.
-    pub is_torque: bool,
-}
-
 /// Draws the maps on one colour scale, with the textured area outlined. The picture is at most as wide as a
 /// journal's text (175 mm), or as wide as requested. There are three maps in a row, or fewer if they would be
 /// too small. A slider that is long along x has two maps in a row, or one; a slider that is long along y has
-/// all in one row.
+/// all in one row. `is_torque` says that mu* is the torque of a rotating drive.
 ///
 /// A slider more than twelve times as long as wide (six times if it is long along y) is drawn with that
 /// ratio.
@@ -76,17 +40,18 @@ pub struct StressMaps {
 ///
 /// No map, a lattice without blocks, an array of the wrong length, a block size that is not a positive
 /// length; a height, or a width without room for a map.
-pub fn stress(maps: &StressMaps, size: PictureSize) -> Result<Picture, PictureError> {
-    check(maps)?;
+pub fn stress(maps: &SnapshotMaps, is_torque: bool, size: PictureSize) -> Result<Picture, PictureError> {
+    maps.check()?;
     size.expect_no_height()?;
-    let layout = StressLayout::of(maps, size.roomy_width(TEXT_WIDTH)?, size.width_mm.is_some());
+    let width = size.roomy_width(TEXT_WIDTH)?;
+    let layout = StressLayout::new(maps, is_torque, width, size.width_mm.is_some());
     let mut canvas = Canvas::sized(layout.width, layout.height, size);
-    let cells = Cells::of(maps.nx, maps.ny, &maps.textured);
+    let cells = maps.lattice.cells();
     for (map, &area) in maps.maps.iter().zip(&layout.areas) {
         cells.draw(&mut canvas, area, &map.values, maps.range);
         canvas.frame(area);
         let room = layout.pitch_x - 0.5 * GAP;
-        let [mut label, note] = titles(map, maps.is_torque, layout.is_wide);
+        let [mut label, note] = titles(map, is_torque, layout.is_wide);
         if label.width() > room {
             label = Text::shortened(&map.label, SIZE_TEXT, room);
         }
@@ -96,20 +61,6 @@ pub fn stress(maps: &StressMaps, size: PictureSize) -> Result<Picture, PictureEr
     let top = layout.areas[0].y;
     layout.bar.draw(&mut canvas, (layout.bar_x, top), top - ABOVE);
     canvas.widened(size).finish()
-}
-
-fn check(maps: &StressMaps) -> Result<(), PictureError> {
-    block_count(maps.nx, maps.ny)?;
-    let [columns, rows] = CellMeans::cells(maps.nx, maps.ny);
-    let expected = columns * rows;
-    check_block_size(maps.block_size)?;
-    if maps.maps.is_empty() {
-        return Err(PictureError::Nothing("map"));
-    }
-    check_length("the texture", maps.textured.len(), expected)?;
-    maps.maps
-        .iter()
-        .try_for_each(|map| check_length(&format!("map `{}`", map.label), map.values.len(), expected))
 }
 
 /// Layout of the picture.
@@ -135,7 +86,7 @@ struct Side {
 }
 
 impl Side {
-    fn of(name: &str, length: f64) -> Self {
+    fn new(name: &str, length: f64) -> Self {
         let (unit, factor) = unit_of(length);
         Self {
             axis: DrawnAxis::linear(0.0, length * factor),
@@ -152,9 +103,9 @@ impl Side {
 impl StressLayout {
     /// Layout of maps in a picture of this width; the maps are not wider than usual unless the width is
     /// requested.
-    fn of(maps: &StressMaps, width: f64, is_asked: bool) -> Self {
-        let [length_x, length_y] = [maps.nx, maps.ny].map(|count| count as f64 * maps.block_size);
-        let sides = [Side::of("x", length_x), Side::of("y", length_y)];
+    fn new(maps: &SnapshotMaps, is_torque: bool, width: f64, is_asked: bool) -> Self {
+        let [length_x, length_y] = maps.lattice.sides();
+        let sides = [Side::new("x", length_x), Side::new("y", length_y)];
         let ratio = length_y / length_x;
         let is_wide = ratio * LONG < 1.0;
         let most = match ratio {
@@ -178,10 +129,7 @@ impl StressLayout {
         let gap = numbers.iter().map(|(_, text)| text.width()).fold(GAP, f64::max) + GAP;
         let room_of = |columns: usize| (width - left - right - GAP + gap) / columns as f64;
         let width_of = |columns: usize| (room_of(columns) - gap).min(max_width).min(MAX_HEIGHT / ratio);
-        let lines = maps
-            .maps
-            .iter()
-            .flat_map(|map| titles(map, maps.is_torque, is_wide));
+        let lines = maps.maps.iter().flat_map(|map| titles(map, is_torque, is_wide));
         let title = lines.map(|line| line.width()).fold(0.0, f64::max);
         let is_small = |columns: &usize| {
             let least = MIN_MAP.min(MAX_HEIGHT / ratio);
@@ -246,63 +194,54 @@ impl StressLayout {
 }
 
 /// The two lines over a map: time, and friction if it is known; with `in_one`, both are in the second line.
-fn titles(map: &StressMap, is_torque: bool, in_one: bool) -> [Text; 2] {
-    let time = format!("t* = {}", number(map.time_star, 1));
-    let time = match map.label.as_str() {
-        "" => time,
-        // A map may be named after its time.
-        label if label.starts_with("t*") => label.to_string(),
-        label => format!("{label}: {time}"),
-    };
-    let what = if is_torque { "torque " } else { "" };
-    let friction = if map.mu_star.is_finite() {
-        format!("{what}\u{3bc}* = {}", number(map.mu_star, 3))
-    } else {
-        String::new()
-    };
-    match in_one {
-        true if friction.is_empty() => [Text::default(), Text::plain(&time, SIZE_TEXT)],
-        true => [
-            Text::default(),
-            Text::plain(&format!("{time}, {friction}"), SIZE_TEXT),
-        ],
-        false => [Text::plain(&time, SIZE_TEXT), Text::plain(&friction, SIZE_TEXT)],
+fn titles(map: &SnapshotMap, is_torque: bool, in_one: bool) -> [Text; 2] {
+    let (time, mut friction) = (map.time_title(), map.friction_title());
+    if is_torque && !friction.is_empty() {
+        friction.insert_str(0, "torque ");
     }
+    let lines = match in_one {
+        true if friction.is_empty() => [String::new(), time],
+        true => [String::new(), format!("{time}, {friction}")],
+        false => [time, friction],
+    };
+    lines.map(|line| Text::plain(&line, SIZE_TEXT))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cell_means::CellMeans;
+    use crate::lattice_map::DrawnLattice;
 
-    fn maps(nx: usize, ny: usize, count: usize) -> StressMaps {
-        let map = |index: usize| StressMap {
+    fn maps(nx: usize, ny: usize, count: usize) -> SnapshotMaps {
+        let map = |index: usize| SnapshotMap {
             label: ["A", "B", "C", "D", "E", "F", "G"][index].to_string(),
             time_star: 12.34 * index as f64,
             mu_star: 0.5,
-            values: CellMeans::of(nx, ny, (0..nx * ny).map(|block| block as f32 / (nx * ny) as f32)),
+            values: CellMeans::compute(nx, ny, (0..nx * ny).map(|block| block as f32 / (nx * ny) as f32)),
         };
         let [columns, rows] = CellMeans::cells(nx, ny);
         let is_textured = |cell: usize| cell % columns == columns / 2 && columns > 2;
         let textured = (0..columns * rows).map(is_textured).collect();
-        StressMaps {
-            nx,
-            ny,
-            block_size: 1e-6,
-            textured,
+        SnapshotMaps {
+            lattice: DrawnLattice {
+                nx,
+                ny,
+                block_size: 1e-6,
+                textured,
+            },
             maps: (0..count).map(map).collect(),
             value_title: "contact stress \u{3c4}_c*".to_owned(),
             range: [0.0, 1.0],
-            is_torque: false,
         }
     }
 
     #[test]
     fn maps_of_other_values_have_their_own_scale_and_titles() {
         let mut maps = maps(4, 4, 2);
-        maps.is_torque = true;
         (maps.value_title, maps.range) = ("\u{3c4}_f*".to_owned(), [0.0, 1.25]);
         maps.maps[0].values[2] = f32::NAN;
-        let svg = stress(&maps, PictureSize::default()).unwrap().svg;
+        let svg = stress(&maps, true, PictureSize::default()).unwrap().svg;
         assert!(svg.contains(">torque \u{3bc}* = 0.500</text>") && !svg.contains("NaN"));
         assert!(svg.contains(">1.0</text>") && svg.contains(">f</text>"));
     }
@@ -318,7 +257,7 @@ mod tests {
             (400, 4, 6, 1),
             (4, 400, 6, 6),
         ] {
-            let layout = StressLayout::of(&maps(nx, ny, count), TEXT_WIDTH, false);
+            let layout = StressLayout::new(&maps(nx, ny, count), false, TEXT_WIDTH, false);
             assert_eq!(layout.columns, columns, "{nx} x {ny}, {count}");
             let bottom = layout.areas[count - 1].bottom();
             assert_eq!(layout.height, bottom + LOWER_ROOM);
@@ -328,8 +267,8 @@ mod tests {
     #[test]
     fn the_same_maps_give_the_same_bytes() {
         assert_eq!(
-            stress(&maps(10, 10, 2), PictureSize::default()).unwrap(),
-            stress(&maps(10, 10, 2), PictureSize::default()).unwrap()
+            stress(&maps(10, 10, 2), false, PictureSize::default()).unwrap(),
+            stress(&maps(10, 10, 2), false, PictureSize::default()).unwrap()
         );
     }
 
@@ -344,11 +283,11 @@ mod tests {
             (300, 20, 2),
         ] {
             let maps = maps(nx, ny, count);
-            let layout = StressLayout::of(&maps, TEXT_WIDTH, false);
+            let layout = StressLayout::new(&maps, false, TEXT_WIDTH, false);
             assert!(layout.width <= TEXT_WIDTH + 6.0, "{nx} x {ny}: {}", layout.width);
             let last = layout.areas[count - 1];
             assert!(last.bottom() < layout.height && last.width >= 40.0 && last.height >= 40.0);
-            stress(&maps, PictureSize::default()).unwrap();
+            stress(&maps, false, PictureSize::default()).unwrap();
         }
     }
 
@@ -357,40 +296,45 @@ mod tests {
         let mut blank = maps(4, 4, 1);
         blank.maps[0].values.fill(f32::NAN);
         blank.maps[0].mu_star = f64::NAN;
-        let svg = stress(&blank, PictureSize::default()).unwrap().svg;
+        let svg = stress(&blank, false, PictureSize::default()).unwrap().svg;
         assert!(svg.contains(">A: t* = 0.0</text>") && !svg.contains("NaN"));
     }
 
     #[test]
     fn a_large_lattice_stays_a_small_file() {
-        let picture = stress(&maps(1000, 600, 1), PictureSize::default()).unwrap();
+        let picture = stress(&maps(1000, 600, 1), false, PictureSize::default()).unwrap();
         assert!(picture.svg.len() < 300_000, "{}", picture.svg.len());
     }
 
     #[test]
     fn what_does_not_fit_the_lattice_is_refused() {
-        let error = |change: &dyn Fn(&mut StressMaps)| {
+        let error = |change: &dyn Fn(&mut SnapshotMaps)| {
             let mut maps = maps(2, 3, 1);
             change(&mut maps);
-            stress(&maps, PictureSize::default()).unwrap_err().to_string()
+            stress(&maps, false, PictureSize::default())
+                .unwrap_err()
+                .to_string()
         };
-        assert_eq!(error(&|m| m.nx = 0), "a lattice of 0 x 3 blocks cannot be drawn");
         assert_eq!(
-            error(&|m| m.nx = usize::MAX),
+            error(&|m| m.lattice.nx = 0),
+            "a lattice of 0 x 3 blocks cannot be drawn"
+        );
+        assert_eq!(
+            error(&|m| m.lattice.nx = usize::MAX),
             format!("a lattice of {} x 3 blocks cannot be drawn", usize::MAX)
         );
         assert_eq!(
-            error(&|m| m.block_size = f64::NAN),
+            error(&|m| m.lattice.block_size = f64::NAN),
             "a block size of NaN m cannot be drawn"
         );
         assert_eq!(error(&|m| m.maps.clear()), "there is no map to draw");
         assert_eq!(
-            error(&|m| m.textured.clear()),
+            error(&|m| m.lattice.textured.clear()),
             "the texture has 0 values instead of 6"
         );
         assert_eq!(
             error(&|m| m.maps[0].values.push(0.0)),
-            "map `A` has 7 values instead of 6"
+            "the map at t* = 0 has 7 values instead of 6"
         );
     }
 

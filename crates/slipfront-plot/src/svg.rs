@@ -44,14 +44,10 @@ fn tag(element: &Element) -> String {
         opacity => format!("fill=\"{colour}\" fill-opacity=\"{opacity}\""),
     };
     match &element.primitive {
-        Primitive::Line {
-            points,
-            width,
-            closed,
-            dashes,
-        } => {
-            let data = path_data(points) + if *closed { "Z" } else { "" };
-            let lengths: Vec<String> = dashes.iter().map(f64::to_string).collect();
+        Primitive::Line(line) => {
+            let data = path_data(&line.points) + if line.closed { "Z" } else { "" };
+            let width = line.width;
+            let lengths: Vec<String> = line.dashes.iter().map(f64::to_string).collect();
             let dashed = match lengths.join(" ") {
                 none if none.is_empty() => none,
                 lengths => format!(" stroke-dasharray=\"{lengths}\""),
@@ -66,19 +62,14 @@ fn tag(element: &Element) -> String {
             let [x, y, radius] = [centre.0, centre.1, *radius].map(length);
             format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {fill}/>\n")
         }
-        Primitive::Letters {
-            text,
-            size,
-            at,
-            upwards,
-        } => {
-            let (x, y) = (length(at.0), length(at.1));
-            let turn = if *upwards {
+        Primitive::Letters(letters) => {
+            let (x, y, size) = (length(letters.at.0), length(letters.at.1), letters.size);
+            let turn = if letters.upwards {
                 format!(" transform=\"rotate(-90 {x} {y})\"")
             } else {
                 String::new()
             };
-            let text = escaped(text);
+            let text = escaped(&letters.text);
             format!("<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{turn} {fill}>{text}</text>\n")
         }
     }

@@ -1,7 +1,9 @@
 //! A TrueType font of the few letters of one picture, as a PDF embeds it, with only the tables that a PDF
 //! requires. The outlines are those of `font.rs`, rounded to whole units of the font.
 
-use crate::font::{GlyphPart, UNITS_PER_EM, advance, outline};
+use tiny_skia::{PathSegment, Point};
+
+use crate::font::{UNITS_PER_EM, advance, outline};
 
 /// Lines above and below the baseline within which the letters of the font lie, in units of the font.
 pub(crate) const ASCENT: i16 = 1901;
@@ -80,21 +82,22 @@ fn put(bytes: &mut Vec<u8>, numbers: &[i16]) {
 
 /// The contours of a letter.
 fn contours(letter: char) -> Vec<Vec<OutlinePoint>> {
-    let whole = |point: [f32; 2]| point.map(|units| units.round() as i16);
+    let whole = |point: Point| [point.x, point.y].map(|units| units.round() as i16);
     let mut contours: Vec<Vec<OutlinePoint>> = Vec::new();
     for part in outline(letter) {
-        if let GlyphPart::Start(point) = part {
-            contours.push(vec![(whole(point), true)]);
-            continue;
+        if let PathSegment::MoveTo(_) = part {
+            contours.push(Vec::new());
         }
         let Some(contour) = contours.last_mut() else {
             continue;
         };
         match part {
-            GlyphPart::Line(point) => contour.push((whole(point), true)),
-            GlyphPart::Curve([control, end]) => contour.extend([(whole(control), false), (whole(end), true)]),
-            // TrueType closes contours implicitly.
-            GlyphPart::Start(_) | GlyphPart::Close => {
+            PathSegment::MoveTo(point) | PathSegment::LineTo(point) => contour.push((whole(point), true)),
+            PathSegment::QuadTo(control, end) => {
+                contour.extend([(whole(control), false), (whole(end), true)]);
+            }
+            // TrueType closes contours implicitly, and has no cubic curves.
+            PathSegment::Close | PathSegment::CubicTo(..) => {
                 if contour.len() > 1 && contour.first() == contour.last() {
                     contour.pop();
                 }

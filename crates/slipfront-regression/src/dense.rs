@@ -31,7 +31,7 @@ pub fn least_squares(columns: &[Vec<f64>], y: &[f64], damping: f64) -> Option<Ve
         .iter()
         .flat_map(|one| columns.iter().map(|other| product(one, other)));
     let added = columns.iter().map(|column| damping * product(column, column));
-    let factor = Factor::of(matrix.collect(), added)?;
+    let factor = Factor::new(matrix.collect(), added)?;
     let mut x: Vec<f64> = columns.iter().map(|column| product(column, y)).collect();
     factor.solve(&mut x);
     Some(x)
@@ -52,12 +52,13 @@ fn tile<S: Simd>(simd: S, a: [&[f64]; ROWS], b: &[[f64; PANEL]]) -> [[f64; PANEL
     sums.map(Into::into)
 }
 
-/// Rows of a matrix starting with row `first` and column `from`. Beyond the last row, this row is repeated.
+/// Rows of a matrix with `d` columns, starting with row `first` and column `from`. Beyond the last row, this
+/// row is repeated.
 #[inline(always)]
-fn rows_from(matrix: &[f64], n: usize, first: usize, from: usize) -> [&[f64]; ROWS] {
+fn rows_from(matrix: &[f64], d: usize, first: usize, from: usize) -> [&[f64]; ROWS] {
     std::array::from_fn(|k| {
-        let row = (first + k).min(n - 1) * n;
-        &matrix[row + from..row + n]
+        let row = (first + k).min(matrix.len() / d - 1) * d;
+        &matrix[row + from..row + d]
     })
 }
 
@@ -81,7 +82,7 @@ impl Factor {
     /// ```text
     /// L_ij = (A_ij - sum_k<j L_ik L_jk)/L_jj,   L_jj = sqrt(A_jj + added_j - sum_k<j L_jk^2)
     /// ```
-    pub(crate) fn of(mut matrix: Vec<f64>, added: impl ExactSizeIterator<Item = f64>) -> Option<Self> {
+    pub(crate) fn new(mut matrix: Vec<f64>, added: impl ExactSizeIterator<Item = f64>) -> Option<Self> {
         let n = added.len();
         assert_eq!(matrix.len(), n * n);
         for (i, added) in added.enumerate() {
@@ -273,72 +274,66 @@ impl Factor {
 /// Sums `sum_j m_ij (x_j - x_i)` over points of `d` numbers each, with a square matrix of as many rows as
 /// points.
 pub(crate) fn differences(matrix: &[f64], points: &[f64], d: usize) -> Vec<f64> {
-    dispatch!(Level::new(), simd => simd.vectorize(
-        #[inline(always)]
-        || sums_of_differences(simd, matrix, points, d)
-    ))
-}
-
-#[inline(always)]
-fn sums_of_differences<S: Simd>(simd: S, matrix: &[f64], points: &[f64], d: usize) -> Vec<f64> {
     let n = points.len() / d;
     // The sum is a matrix product minus the row sums times a point, which avoids a difference for every pair.
-    let rows: Vec<f64> = matrix.chunks_exact(n).map(|row| row.iter().sum()).collect();
-    let mut found = vec![0.0; n * d];
-    for first in (0..d).step_by(PANEL) {
-        let width = PANEL.min(d - first);
-        let panel: Vec<[f64; PANEL]> = points
-            .chunks_exact(d)
-            .map(|point| std::array::from_fn(|column| point[first + column.min(width - 1)]))
-            .collect();
-        for group in (0..n).step_by(ROWS) {
-            let sums = tile(simd, rows_from(matrix, n, group, 0), &panel);
-            for (row, sums) in (group..n).zip(sums) {
-                for (place, sum) in (row * d + first..).zip(sums.into_iter().take(width)) {
-                    found[place] = sum - rows[row] * points[place];
-                }
-            }
+    let mut sums = product(matrix, n, d, |j, column| points[j * d + column]);
+    let rows = matrix.chunks_exact(n).zip(points.chunks_exact(d));
+    for (sums, (row, point)) in sums.chunks_exact_mut(d).zip(rows) {
+        let sum_of_row: f64 = row.iter().sum();
+        for (sum, x) in sums.iter_mut().zip(point) {
+            *sum -= sum_of_row * x;
         }
     }
-    found
+    sums
 }
 
 /// Squared distances between points of `d` numbers each, with a row per point of `points` and a column per
 /// point of `others`.
 pub fn squared_distances(points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
+    let m = others.len() / d;
+    let square = |point: &[f64]| point.iter().map(|x| x * x).sum::<f64>();
+    let squares: Vec<f64> = others.chunks_exact(d).map(square).collect();
+    let mut distances = product(points, d, m, |k, column| others[column * d + k]);
+    for (distances, point) in distances.chunks_exact_mut(m).zip(points.chunks_exact(d)) {
+        let own = square(point);
+        for (distance, other) in distances.iter_mut().zip(&squares) {
+            *distance = (own + other - 2.0 * *distance).max(0.0);
+        }
+    }
+    distances
+}
+
+/// The product `sum_k a_ik b(k, j)` of a matrix with rows of `d` numbers and a function with `m` columns.
+fn product(a: &[f64], d: usize, m: usize, b: impl Fn(usize, usize) -> f64) -> Vec<f64> {
     dispatch!(Level::new(), simd => simd.vectorize(
         #[inline(always)]
-        || distances(simd, points, others, d)
+        || product_of_tiles(simd, a, d, m, &b)
     ))
 }
 
 #[inline(always)]
-fn distances<S: Simd>(simd: S, points: &[f64], others: &[f64], d: usize) -> Vec<f64> {
-    let (n, m) = (points.len() / d, others.len() / d);
-    let square = |point: &[f64]| point.iter().map(|x| x * x).sum::<f64>();
-    let [own, squares]: [Vec<f64>; 2] =
-        [points, others].map(|points| points.chunks_exact(d).map(square).collect());
-    let mut distances = vec![0.0; n * m];
+fn product_of_tiles<S: Simd>(
+    simd: S,
+    a: &[f64],
+    d: usize,
+    m: usize,
+    b: &impl Fn(usize, usize) -> f64,
+) -> Vec<f64> {
+    let n = a.len() / d;
+    let mut product = vec![0.0; n * m];
     for first in (0..m).step_by(PANEL) {
         let width = PANEL.min(m - first);
         let panel: Vec<[f64; PANEL]> = (0..d)
-            .map(|k| std::array::from_fn(|column| others[(first + column.min(width - 1)) * d + k]))
+            .map(|k| std::array::from_fn(|column| b(k, first + column.min(width - 1))))
             .collect();
         for group in (0..n).step_by(ROWS) {
-            let rows = std::array::from_fn(|k| {
-                let row = (group + k).min(n - 1) * d;
-                &points[row..row + d]
-            });
-            let products = tile(simd, rows, &panel);
-            for (k, row) in (group..n.min(group + ROWS)).enumerate() {
-                let found = &mut distances[row * m + first..row * m + first + width];
-                for ((found, product), square) in found.iter_mut().zip(products[k]).zip(&squares[first..]) {
-                    *found = (own[row] + square - 2.0 * product).max(0.0);
-                }
+            let sums = tile(simd, rows_from(a, d, group, 0), &panel);
+            for (row, sums) in (group..n).zip(sums) {
+                product[row * m + first..][..width].copy_from_slice(&sums[..width]);
             }
         }
     }
-    distances
+    product
 }
 
 #[cfg(test)]
@@ -370,7 +365,7 @@ mod tests {
                     matrix[i * n + i - 1] = -1.0;
                 }
             }
-            let factor = Factor::of(matrix, vec![1.5; n].into_iter()).unwrap();
+            let factor = Factor::new(matrix, vec![1.5; n].into_iter()).unwrap();
             let size = n as f64 + 1.0;
             for (i, found) in factor.inverse_diagonal().into_iter().enumerate() {
                 let place = i as f64 + 1.0;
@@ -407,8 +402,8 @@ mod tests {
 
     #[test]
     fn a_matrix_that_is_not_positive_has_no_factor() {
-        assert!(Factor::of(vec![1.0, 0.0, 2.0, 1.0], [0.0; 2].into_iter()).is_none());
-        assert!(Factor::of(vec![f64::NAN], [0.0].into_iter()).is_none());
+        assert!(Factor::new(vec![1.0, 0.0, 2.0, 1.0], [0.0; 2].into_iter()).is_none());
+        assert!(Factor::new(vec![f64::NAN], [0.0].into_iter()).is_none());
     }
 
     #[test]

@@ -12,12 +12,12 @@ pub(crate) struct Fit {
 impl Fit {
     /// The regression `A a = u` of values u with mean 0, `A = K + diag(noise)`; none if A is not positive
     /// definite.
-    pub(crate) fn of(
+    pub(crate) fn new(
         kernel: Vec<f64>,
         values: &[f64],
         noise: impl ExactSizeIterator<Item = f64>,
     ) -> Option<Self> {
-        let factor = Factor::of(kernel, noise)?;
+        let factor = Factor::new(kernel, noise)?;
         let mut coefficients = values.to_vec();
         factor.solve(&mut coefficients);
         // Leave-one-out residuals from a single factor: `n` separate regressions would give the same.
@@ -66,9 +66,9 @@ impl Noise {
     }
 }
 
-/// Rows of summaries, with each summary multiplied by its multiplier.
-pub(crate) fn multiplied(summaries: &[f64], multipliers: &[f64]) -> Vec<f64> {
-    let rows = summaries.chunks_exact(multipliers.len());
+/// Rows of features, with each feature multiplied by its multiplier.
+pub(crate) fn multiplied(features: &[f64], multipliers: &[f64]) -> Vec<f64> {
+    let rows = features.chunks_exact(multipliers.len());
     rows.flat_map(|row| row.iter().zip(multipliers).map(|(x, by)| x * by))
         .collect()
 }
@@ -121,9 +121,9 @@ mod tests {
             .map(|row| row[0] * row[1] + row[0])
             .collect();
         let noise = |n: usize| (0..n).map(|i| 0.01 * (1.0 + i as f64));
-        let all = Fit::of(kernel_of_all(&table, d), &targets, noise(n)).unwrap();
+        let all = Fit::new(kernel_of_all(&table, d), &targets, noise(n)).unwrap();
         let (points, last) = table.split_at((n - 1) * d);
-        let rest = Fit::of(kernel_of_all(points, d), &targets[..n - 1], noise(n - 1)).unwrap();
+        let rest = Fit::new(kernel_of_all(points, d), &targets[..n - 1], noise(n - 1)).unwrap();
         let near = kernel(last, points, d);
         let predicted: f64 = near.iter().zip(&rest.coefficients).map(|(k, a)| k * a).sum();
         // Rounding, times a condition number of at most n/0.01.

@@ -1,4 +1,4 @@
-//! Maximum-likelihood weights of the summaries in the kernel of an unknown, and ridge.
+//! Maximum-likelihood weights of the features in the kernel of an unknown, and ridge.
 //!
 //! The values `u` at the training runs are modelled as normal numbers with the covariance `c A`, with c their
 //! maximum-likelihood scale, and given variances v_i of the noise. The parameters minimize the negative
@@ -11,7 +11,7 @@
 //! dl/dlog w_f = w_f sum_i x_if sum_j g_ij k_ij (x_jf - x_if),   dl/dlog lambda = lambda sum_i v_i g_ii
 //! ```
 //!
-//! At first all summaries share one weight, then each gets its own. The single weights start from the mean
+//! At first all features share one weight, then each gets its own. The single weights start from the mean
 //! squared slopes of the first regression (Radhakrishnan et al., Science 383 (2024) 1461, with a diagonal
 //! matrix), and a prior keeps them near this start: a hundred free weights would fit the noise of a few
 //! hundred runs.
@@ -38,11 +38,11 @@ const COMMON_RIDGE: f64 = 1e-3;
 const COMMON_SPREAD: f64 = 4.0;
 
 /// Initial ridge, and initial median of the weighted squared distances, in the search for the weights of all
-/// summaries.
+/// features.
 const RIDGE: f64 = 3e-3;
 const SPREAD: f64 = 0.5;
 
-/// Least initial weight of a summary, relative to the largest.
+/// Least initial weight of a feature, relative to the largest.
 const LEAST_WEIGHT: f64 = 1e-6;
 
 /// Least ridge: below it, rounding errors are as large as the differences between the kernels of neighbours.
@@ -57,21 +57,21 @@ const LEAST_EXPLAINED: f64 = 0.02;
 
 /// Parameters of the kernel of an unknown.
 pub(crate) struct Parameters {
-    /// Multipliers of the summaries, the square roots of their weights.
+    /// Multipliers of the features, the square roots of their weights.
     pub(crate) multipliers: Vec<f64>,
     /// Noise of a run, added to the diagonal of the kernel.
     pub(crate) ridge: f64,
 }
 
 impl Parameters {
-    /// Maximum-likelihood parameters for values with mean 0 at rows of summaries; none if no summary depends
+    /// Maximum-likelihood parameters for values with mean 0 at rows of features; none if no feature depends
     /// on the unknown.
-    pub(crate) fn likeliest(summaries: &[f64], values: &[f64], noise: Noise) -> Option<Self> {
-        let (n, d) = (values.len(), summaries.len() / values.len());
+    pub(crate) fn likeliest(features: &[f64], values: &[f64], noise: Noise) -> Option<Self> {
+        let (n, d) = (values.len(), features.len() / values.len());
         // The work grows with the cube of the number of runs, and a few runs suffice for two numbers.
         let some = n.min(MAX_OF_COMMON_WEIGHT);
-        let mut first = Sample::of(&summaries[..some * d], &values[..some]);
-        let spread = median(&squared_distances(first.summaries, first.summaries, d));
+        let mut first = Sample::new(&features[..some * d], &values[..some]);
+        let spread = median(&squared_distances(first.features, first.features, d));
         if spread <= 0.0 {
             return None;
         }
@@ -84,7 +84,7 @@ impl Parameters {
             common = first.common_weight(common);
         }
         let weights = first.weights_of_slopes(&common)?;
-        let mut all = Sample::of(summaries, values);
+        let mut all = Sample::new(features, values);
         if let Some(variances) = all.learnt_variances(noise, &weights, RIDGE) {
             all.variances = variances;
         }
@@ -92,40 +92,32 @@ impl Parameters {
     }
 }
 
-/// Values at rows of summaries.
+/// Values at rows of features.
 struct Sample<'a> {
-    summaries: &'a [f64],
+    features: &'a [f64],
     values: &'a [f64],
     /// Variances of the noise of the runs, in units of the ridge.
     variances: Vec<f64>,
 }
 
-/// Negative logarithm of a likelihood, and its derivatives with respect to the logarithms of weights and
-/// ridge.
-struct Likelihood {
-    value: f64,
-    of_weights: Vec<f64>,
-    of_ridge: f64,
-}
-
 impl<'a> Sample<'a> {
-    fn of(summaries: &'a [f64], values: &'a [f64]) -> Self {
+    fn new(features: &'a [f64], values: &'a [f64]) -> Self {
         Self {
-            summaries,
+            features,
             values,
             variances: vec![1.0; values.len()],
         }
     }
 
-    /// Number of summaries.
+    /// Number of features.
     fn d(&self) -> usize {
-        self.summaries.len() / self.values.len()
+        self.features.len() / self.values.len()
     }
 
-    /// The summaries, each times the square root of its weight.
+    /// The features, each times the square root of its weight.
     fn points(&self, weights: &[f64]) -> Vec<f64> {
         let roots: Vec<f64> = weights.iter().map(|weight| weight.sqrt()).collect();
-        multiplied(self.summaries, &roots)
+        multiplied(self.features, &roots)
     }
 
     /// The kernel with these weights.
@@ -139,7 +131,7 @@ impl<'a> Sample<'a> {
     }
 
     fn fit(&self, weights: &[f64], ridge: f64) -> Option<Fit> {
-        Fit::of(self.kernel(weights), self.values, self.noise(ridge))
+        Fit::new(self.kernel(weights), self.values, self.noise(ridge))
     }
 
     /// Noise variances from the residuals of a regression; none if all runs have the same noise, which needs
@@ -151,39 +143,36 @@ impl<'a> Sample<'a> {
         noise.variances(&self.fit(weights, ridge)?.residuals)
     }
 
-    /// Weights of all summaries, which are equal, from the logarithms of this weight and of the ridge.
+    /// Weights of all features, which are equal, from the logarithms of this weight and of the ridge.
     fn equal_weights(&self, common: &[f64]) -> Vec<f64> {
         vec![libm::exp(common[0]); self.d()]
     }
 
-    /// Maximum-likelihood logarithms of the common weight of all summaries and of the ridge, starting from
+    /// Maximum-likelihood logarithms of the common weight of all features and of the ridge, starting from
     /// `start`.
     fn common_weight(&self, start: Vec<f64>) -> Vec<f64> {
         descend(start, &|logs| {
-            let found = self.likelihood(&self.equal_weights(logs), libm::exp(logs[1]))?;
-            Some(Slope {
-                value: found.value,
-                slopes: vec![found.of_weights.iter().sum(), found.of_ridge],
-            })
+            let mut found = self.likelihood(&self.equal_weights(logs), libm::exp(logs[1]))?;
+            let of_ridge = found.slopes.split_off(self.d());
+            found.slopes = vec![found.slopes.iter().sum(), of_ridge[0]];
+            Some(found)
         })
     }
 
-    /// Most probable weight of every summary, with a log-normal prior around the given weights.
+    /// Most probable weight of every feature, with a log-normal prior around the given weights.
     fn weights_near(&self, weights: &[f64]) -> Parameters {
         let d = weights.len();
         let mut start: Vec<f64> = weights.iter().map(|&weight| libm::log(weight)).collect();
         start.push(libm::log(RIDGE));
         let found = descend(start.clone(), &|logs| {
             let weights: Vec<f64> = logs[..d].iter().map(|&log| libm::exp(log)).collect();
-            let found = self.likelihood(&weights, libm::exp(logs[d]))?;
-            let (mut value, mut slopes) = (found.value, found.of_weights);
-            for ((slope, log), first) in slopes.iter_mut().zip(logs).zip(&start) {
+            let mut found = self.likelihood(&weights, libm::exp(logs[d]))?;
+            for ((slope, log), first) in found.slopes.iter_mut().zip(logs).zip(&start).take(d) {
                 let away = (log - first) / PRIOR_DEVIATION;
-                value += 0.5 * away * away;
+                found.value += 0.5 * away * away;
                 *slope += away / PRIOR_DEVIATION;
             }
-            slopes.push(found.of_ridge);
-            Some(Slope { value, slopes })
+            Some(found)
         });
         Parameters {
             multipliers: found[..d].iter().map(|log| libm::exp(0.5 * log)).collect(),
@@ -191,10 +180,12 @@ impl<'a> Sample<'a> {
         }
     }
 
-    fn likelihood(&self, weights: &[f64], ridge: f64) -> Option<Likelihood> {
+    /// Negative logarithm of the likelihood, and its derivatives with respect to the logarithms of weights
+    /// and ridge.
+    fn likelihood(&self, weights: &[f64], ridge: f64) -> Option<Slope> {
         let (n, d) = (self.values.len(), self.d());
         let kernel = self.kernel(weights);
-        let factor = Factor::of(kernel.clone(), self.noise(ridge))?;
+        let factor = Factor::new(kernel.clone(), self.noise(ridge))?;
         let mut coefficients = self.values.to_vec();
         factor.solve(&mut coefficients);
         let product: f64 = self.values.iter().zip(&coefficients).map(|(u, a)| u * a).sum();
@@ -211,25 +202,22 @@ impl<'a> Sample<'a> {
             // The kernel of a run with itself is 1.
             of_ridge += ridge * self.variances[i] * row[i];
         }
-        let pulls = differences(&g, self.summaries, d);
+        let pulls = differences(&g, self.features, d);
         let mut of_weights = vec![0.0; d];
-        for (pulls, row) in pulls.chunks_exact(d).zip(self.summaries.chunks_exact(d)) {
+        for (pulls, row) in pulls.chunks_exact(d).zip(self.features.chunks_exact(d)) {
             for ((sum, pull), x) in of_weights.iter_mut().zip(pulls).zip(row) {
                 *sum += pull * x;
             }
         }
-        for (sum, weight) in of_weights.iter_mut().zip(weights) {
-            *sum *= weight;
-        }
-        Some(Likelihood {
+        let of_weights = of_weights.iter().zip(weights).map(|(sum, weight)| sum * weight);
+        Some(Slope {
             value,
-            of_weights,
-            of_ridge,
+            slopes: of_weights.chain([of_ridge]).collect(),
         })
     }
 
     /// Weights proportional to the mean squared slopes of a regression with the same weight for all
-    /// summaries, given by the logarithms of the weight and of the ridge; none if this regression has learnt
+    /// features, given by the logarithms of the weight and of the ridge; none if this regression has learnt
     /// nothing. A run with more noise counts for less.
     ///
     /// ```text
@@ -256,7 +244,7 @@ impl<'a> Sample<'a> {
             }
         }
         let mut squares = vec![0.0; d];
-        let slopes = differences(&kernel, self.summaries, d);
+        let slopes = differences(&kernel, self.features, d);
         for (slopes, variance) in slopes.chunks_exact(d).zip(&self.variances) {
             for (sum, slope) in squares.iter_mut().zip(slopes) {
                 *sum += slope * slope / variance;
@@ -331,20 +319,20 @@ mod tests {
     use super::super::for_tests::{chance, cube};
     use super::*;
 
-    /// Values that depend on two of three summaries, with noise.
+    /// Values that depend on two of three features, with noise.
     fn sample(n: usize) -> (Vec<f64>, Vec<f64>) {
-        let summaries = cube(n, 3);
-        let rows = summaries.chunks_exact(3).zip(chance(n));
+        let features = cube(n, 3);
+        let rows = features.chunks_exact(3).zip(chance(n));
         let values: Vec<f64> = rows
             .map(|(row, chance)| libm::sin(3.0 * row[0]) - row[1] + 0.2 * (chance - 0.5))
             .collect();
-        (summaries, values)
+        (features, values)
     }
 
     #[test]
     fn slopes_of_the_likelihood_are_its_derivatives() {
-        let (summaries, values) = sample(40);
-        let mut sample = Sample::of(&summaries, &values);
+        let (features, values) = sample(40);
+        let mut sample = Sample::new(&features, &values);
         sample.variances = (0..40).map(|run| 1.0 + f64::from(run % 3)).collect();
         let at = |logs: &[f64]| {
             let weights: Vec<f64> = logs[..3].iter().map(|&log| libm::exp(log)).collect();
@@ -360,20 +348,20 @@ mod tests {
                 at(&logs).value
             };
             let slope = (moved(step) - moved(-step)) / (2.0 * step);
-            let known = found.of_weights.get(k).copied().unwrap_or(found.of_ridge);
             // The error of a central difference is a third derivative times step^2/6, plus rounding over the
             // step.
+            let known = found.slopes[k];
             assert!((slope - known).abs() < 1e-5, "{k} {slope} {known}");
         }
     }
 
     #[test]
     fn what_never_differs_tells_nothing() {
-        let (summaries, values) = sample(40);
-        assert!(Parameters::likeliest(&summaries, &[0.0; 40], Noise::HeavyTailed).is_none());
+        let (features, values) = sample(40);
+        assert!(Parameters::likeliest(&features, &[0.0; 40], Noise::HeavyTailed).is_none());
         assert!(Parameters::likeliest(&[0.7; 120], &values, Noise::Normal).is_none());
-        // Three of four runs have the same summaries.
-        let some = summaries.chunks_exact(3).enumerate();
+        // Three of four runs have the same features.
+        let some = features.chunks_exact(3).enumerate();
         let some: Vec<f64> = some
             .flat_map(|(i, row)| if i % 4 == 0 { row } else { &[0.7; 3] }.to_vec())
             .collect();
@@ -381,9 +369,9 @@ mod tests {
     }
 
     #[test]
-    fn a_summary_without_influence_has_the_least_weight() {
-        let (summaries, values) = sample(150);
-        let found = Parameters::likeliest(&summaries, &values, Noise::Normal).unwrap();
+    fn a_feature_without_influence_has_the_least_weight() {
+        let (features, values) = sample(150);
+        let found = Parameters::likeliest(&features, &values, Noise::Normal).unwrap();
         let [first, second, third] = found.multipliers[..] else {
             panic!("{:?}", found.multipliers);
         };
@@ -413,12 +401,12 @@ mod tests {
 
     #[test]
     fn slopes_are_those_of_the_unknown() {
-        let summaries = cube(150, 3);
-        let values: Vec<f64> = summaries
+        let features = cube(150, 3);
+        let values: Vec<f64> = features
             .chunks_exact(3)
             .map(|row| 0.2 * row[0] - 0.1 * row[1])
             .collect();
-        let sample = Sample::of(&summaries, &values);
+        let sample = Sample::new(&features, &values);
         let weights = sample.weights_of_slopes(&[0.25, 1e-6].map(libm::log)).unwrap();
         // As accurate as the regression of a line by a Gaussian kernel.
         assert!((weights[1] / weights[0] - 0.25).abs() < 0.01, "{weights:?}");

@@ -1,6 +1,6 @@
-//! Regression of one unknown on the summaries of training runs, which determines the relevant summaries.
+//! Regression of one unknown on the features of training runs, which determines the relevant features.
 //!
-//! Kernel ridge regression with a Gaussian kernel. Every summary has its own weight, determined in
+//! Kernel ridge regression with a Gaussian kernel. Every feature has its own weight, determined in
 //! `parameters.rs`:
 //!
 //! ```text
@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The noise variances v are larger for outliers. The logarithm of the size of the residuals is another
-//! function of the summaries, with its own regression of this form.
+//! function of the features, with its own regression of this form.
 //!
 //! Intervals use the leave-one-out prediction of each run, which needs no separate regression: `u_i -
 //! f_without_i(x_i) = a_i/[A^-1]_ii`.
@@ -21,7 +21,7 @@ use crate::parameters::{MAX_SEARCHED, Parameters};
 /// 0 is due to chance.
 const LEAST_SIZE: f64 = 0.1;
 
-/// Regression of an unknown on the summaries of training runs, and of the size of its residuals.
+/// Regression of an unknown on the features of training runs, and of the size of its residuals.
 #[derive(Clone, Debug)]
 pub struct Regression {
     value: Function,
@@ -33,14 +33,14 @@ pub struct Regression {
     scales: Vec<f64>,
 }
 
-/// A function of summaries, fitted to values at training runs.
+/// A function of features, fitted to values at training runs.
 #[derive(Clone, Debug)]
 struct Function {
     /// Mean of the values.
     mean: f64,
-    /// Multipliers of the summaries, the square roots of their weights; empty if no summary is relevant.
+    /// Multipliers of the features, the square roots of their weights; empty if no feature is relevant.
     multipliers: Vec<f64>,
-    /// The summaries of the training runs, times their multipliers.
+    /// The features of the training runs, times their multipliers.
     points: Vec<f64>,
     coefficients: Vec<f64>,
 }
@@ -50,7 +50,7 @@ struct Function {
 pub struct Prediction {
     /// The unknown.
     pub value: f64,
-    /// Size of the residuals of runs with similar summaries: the exponential of the mean of their logarithms.
+    /// Size of the residuals of runs with similar features: the exponential of the mean of their logarithms.
     pub scale: f64,
 }
 
@@ -93,17 +93,17 @@ impl Regression {
 }
 
 impl Regression {
-    /// Learns an unknown from `unknown.len()` rows of summaries.
-    pub fn learn(summaries: &[f64], unknown: &[f64]) -> Self {
-        let (value, residuals) = Function::learn(summaries, unknown, Noise::HeavyTailed);
+    /// Learns an unknown from `unknown.len()` rows of features.
+    pub fn learn(features: &[f64], unknown: &[f64]) -> Self {
+        let (value, residuals) = Function::learn(features, unknown, Noise::HeavyTailed);
         let sizes: Vec<f64> = residuals.iter().map(|e| e.abs()).collect();
         let least = LEAST_SIZE * median(&sizes);
         let logs: Vec<f64> = sizes
             .iter()
-            // All residuals may be zero, for an unknown that is an exact function of the summaries.
+            // All residuals may be zero, for an unknown that is an exact function of the features.
             .map(|size| libm::log(size + least + f64::MIN_POSITIVE))
             .collect();
-        let (log_scale, of_logs) = Function::learn(summaries, &logs, Noise::Normal);
+        let (log_scale, of_logs) = Function::learn(features, &logs, Noise::Normal);
         Self {
             value,
             log_scale,
@@ -118,28 +118,28 @@ impl Regression {
 
     /// Similarity of every training run to a record in this regression and in another: the product of their
     /// kernels.
-    pub fn likeness(&self, summaries: &[f64], other: &Self) -> Vec<f64> {
+    pub fn likeness(&self, features: &[f64], other: &Self) -> Vec<f64> {
         let own = |of: &Self| {
-            let kernel = of.value.kernel(summaries);
+            let kernel = of.value.kernel(features);
             kernel.unwrap_or_else(|| vec![1.0; of.predictions.len()])
         };
         own(self).iter().zip(own(other)).map(|(a, b)| a * b).collect()
     }
 
-    /// The prediction for these summaries of a record.
-    pub fn predict(&self, summaries: &[f64]) -> Prediction {
+    /// The prediction for these features of a record.
+    pub fn predict(&self, features: &[f64]) -> Prediction {
         Prediction {
-            value: self.value.at(summaries),
-            scale: libm::exp(self.log_scale.at(summaries)),
+            value: self.value.at(features),
+            scale: libm::exp(self.log_scale.at(features)),
         }
     }
 }
 
 impl Function {
-    /// Learns a function from its values at `values.len()` rows of summaries; returns it with the
+    /// Learns a function from its values at `values.len()` rows of features; returns it with the
     /// leave-one-out residual of every run.
-    fn learn(summaries: &[f64], values: &[f64], noise: Noise) -> (Self, Vec<f64>) {
-        let (n, d) = (values.len(), summaries.len() / values.len());
+    fn learn(features: &[f64], values: &[f64], noise: Noise) -> (Self, Vec<f64>) {
+        let (n, d) = (values.len(), features.len() / values.len());
         let mean = mean(values);
         let targets: Vec<f64> = values.iter().map(|value| value - mean).collect();
         let nothing = Self {
@@ -150,14 +150,14 @@ impl Function {
         };
         // A few hundred runs suffice for weights, which need many factorizations; coefficients need all runs.
         let searched = n.min(MAX_SEARCHED);
-        let Some(parameters) = Parameters::likeliest(&summaries[..searched * d], &targets[..searched], noise)
+        let Some(parameters) = Parameters::likeliest(&features[..searched * d], &targets[..searched], noise)
         else {
             return (nothing, targets);
         };
-        let points = multiplied(summaries, &parameters.multipliers);
+        let points = multiplied(features, &parameters.multipliers);
         let fit = |variances: Vec<f64>| {
             let noise = variances.into_iter().map(|variance| parameters.ridge * variance);
-            Fit::of(kernel_of_all(&points, d), &targets, noise)
+            Fit::new(kernel_of_all(&points, d), &targets, noise)
         };
         let Some(mut found) = fit(vec![1.0; n]) else {
             return (nothing, targets);
@@ -175,15 +175,15 @@ impl Function {
         (function, found.residuals)
     }
 
-    /// Kernels between summaries and those of the training runs; none if no summary is relevant.
-    fn kernel(&self, summaries: &[f64]) -> Option<Vec<f64>> {
+    /// Kernels between features and those of the training runs; none if no feature is relevant.
+    fn kernel(&self, features: &[f64]) -> Option<Vec<f64>> {
         let d = self.multipliers.len();
-        (d > 0).then(|| kernel(&multiplied(summaries, &self.multipliers), &self.points, d))
+        (d > 0).then(|| kernel(&multiplied(features, &self.multipliers), &self.points, d))
     }
 
-    /// The value at these summaries.
-    fn at(&self, summaries: &[f64]) -> f64 {
-        let kernel = self.kernel(summaries).unwrap_or_default();
+    /// The value at these features.
+    fn at(&self, features: &[f64]) -> f64 {
+        let kernel = self.kernel(features).unwrap_or_default();
         self.mean
             + kernel
                 .iter()
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn summaries_that_tell_nothing_predict_the_mean() {
+    fn features_that_tell_nothing_predict_the_mean() {
         let n = 150;
         let truths = chance(n);
         let found = Regression::learn(&cube(n, 3), &truths);

@@ -35,7 +35,7 @@ struct Scale {
 }
 
 impl Scale {
-    fn of(sample: &[&Vec<f64>]) -> Self {
+    fn from_sample(sample: &[&Vec<f64>]) -> Self {
         let mean = means(sample);
         let deviation = |k: usize| {
             let squares: f64 = sample.iter().map(|row| (row[k] - mean[k]).powi(2)).sum();
@@ -70,8 +70,8 @@ struct Fit {
 }
 
 impl Fit {
-    fn of(vectors: &[&Vec<f64>], parameters: &[&Vec<f64>]) -> Self {
-        let (scale, centre) = (Scale::of(vectors), means(parameters));
+    fn new(vectors: &[&Vec<f64>], parameters: &[&Vec<f64>]) -> Self {
+        let (scale, centre) = (Scale::from_sample(vectors), means(parameters));
         let (d, p) = (scale.mean.len(), centre.len());
         let z: Vec<Vec<f64>> = vectors.iter().map(|row| scale.scaled(row)).collect();
         let less_mean = |row: &Vec<f64>| row.iter().zip(&centre).map(|(q, centre)| q - centre).collect();
@@ -132,7 +132,7 @@ fn means(rows: &[&Vec<f64>]) -> Vec<f64> {
 /// Factor of a covariance, with an addition to its diagonal that exceeds rounding errors.
 fn factor(covariance: Vec<f64>, added: f64) -> Factor {
     let n = covariance.len().isqrt();
-    let factor = Factor::of(covariance, std::iter::repeat_n(added, n));
+    let factor = Factor::new(covariance, std::iter::repeat_n(added, n));
     factor.unwrap_or_else(|| panic!("a covariance of finite numbers is positive"))
 }
 
@@ -154,7 +154,7 @@ pub fn distance_from(sample: &[Vec<f64>], parameters: &[Vec<f64>], vector: &[f64
         let rest = |rows: &'_ [Vec<f64>]| (0..rows.len()).filter(|k| k % PARTS != part).collect::<Vec<_>>();
         let vectors: Vec<&Vec<f64>> = rest(sample).iter().map(|&k| &sample[k]).collect();
         let theirs: Vec<&Vec<f64>> = rest(sample).iter().map(|&k| &parameters[k]).collect();
-        let fit = Fit::of(&vectors, &theirs);
+        let fit = Fit::new(&vectors, &theirs);
         let held_out = sample.iter().skip(part).step_by(PARTS);
         others.extend(held_out.map(|row| fit.squared_distance(row)));
         own.push(fit.squared_distance(vector));
@@ -166,7 +166,7 @@ pub fn distance_from(sample: &[Vec<f64>], parameters: &[Vec<f64>], vector: &[f64
     Distance {
         rank: (as_far + 1) as f64 / (others.len() + 1) as f64,
         ratio: (own / others[others.len() / 2]).sqrt(),
-        deviations: Scale::of(&sample.iter().collect::<Vec<_>>()).scaled(vector),
+        deviations: Scale::from_sample(&sample.iter().collect::<Vec<_>>()).scaled(vector),
     }
 }
 

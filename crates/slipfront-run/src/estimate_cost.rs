@@ -1,10 +1,9 @@
-//! Estimate of the cost of a run from some of its steps.
+//! Estimate of the cost of a run from some of its steps: a lower and an upper bound of its time in s on an
+//! otherwise idle machine.
 
-use std::ops::{Add, Mul};
 use std::sync::Arc;
 use std::time::Duration;
 
-use serde::Serialize;
 use slipfront::{Execution, State};
 use slipfront_base::machine::thread_time;
 use slipfront_case::case::{Case, ExpectedSteps};
@@ -23,43 +22,6 @@ const PILOT: f64 = 0.5;
 const MOST_PILOT_BLOCKS: usize = 1_000_000;
 /// V* N above which blocks slide in every step: a faster pilot run has no larger share of such steps.
 const ALWAYS_SLIDING: f64 = 5.0;
-
-/// Bounds of the time of a computation on an otherwise idle machine, in s, estimated from a short run. In
-/// JSON it is `[least, most]`; a missing upper bound is null.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-#[serde(into = "[f64; 2]")]
-pub struct TimeRange {
-    /// The lower bound.
-    pub least: f64,
-    /// The upper bound; infinite if a held drive may pause for any number of steps.
-    pub most: f64,
-}
-
-impl From<TimeRange> for [f64; 2] {
-    fn from(time: TimeRange) -> Self {
-        [time.least, time.most]
-    }
-}
-
-impl Add for TimeRange {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            least: self.least + other.least,
-            most: self.most + other.most,
-        }
-    }
-}
-
-impl Mul<f64> for TimeRange {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        Self {
-            least: factor * self.least,
-            most: factor * self.most,
-        }
-    }
-}
 
 /// Time of a step of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +45,7 @@ struct SlipTime {
     /// x, the V* N at which the time t was found.
     front_ratio: f64,
     /// Bounds of the time t, in s.
-    seconds: TimeRange,
+    seconds: [f64; 2],
     /// Upper limit of the time, in s, which it has if blocks slide in every step.
     longest: f64,
     /// Exponents of the lower and of the upper bound at a smaller V* N.
@@ -92,7 +54,7 @@ struct SlipTime {
 
 impl StepTime {
     /// Measures some steps of a case, and a run of the case that is shortened by a faster drive.
-    pub fn of(case: &Case) -> Self {
+    pub fn measure(case: &Case) -> Self {
         let at_rest = measured(case, None);
         let sliding = measured(case, Some(sliding(case)));
         Self {
@@ -103,18 +65,17 @@ impl StepTime {
         }
     }
 
-    /// Time of these steps.
-    pub fn of_steps(&self, expected: &ExpectedSteps) -> TimeRange {
+    /// Bounds of the time of these steps, in s; the upper one is infinite if a held drive may pause for any
+    /// number of steps.
+    pub fn of_steps(&self, expected: &ExpectedSteps) -> [f64; 2] {
         let [fewest, most] = expected.steps;
-        let slip = self.slip.at(expected.front_ratio);
-        TimeRange {
-            least: fewest * (self.at_rest + slip.least),
-            most: if expected.stands {
-                f64::INFINITY
-            } else {
-                most * (self.at_rest + slip.most)
-            },
-        }
+        let [shortest, longest] = self.slip.at(expected.front_ratio);
+        let most = if expected.stands {
+            f64::INFINITY
+        } else {
+            most * (self.at_rest + longest)
+        };
+        [fewest * (self.at_rest + shortest), most]
     }
 }
 
@@ -133,14 +94,12 @@ impl SlipTime {
         let faster = (steps * sliding.max(at_rest) / PILOT).max(1.0);
         let mut pilot = case.clone();
         Arc::make_mut(&mut pilot.model).drive.v_star *= faster;
-        let (seconds, made) = Steps::new(pilot, None).seconds((steps / faster).ceil() as u64);
+        let mut running = started(pilot, None);
+        let (seconds, made) = seconds_of(&mut running, (steps / faster).ceil() as u64);
         let slip = (seconds / made as f64 - at_rest).max(0.0);
         Some(Self {
             front_ratio: (faster * expected.front_ratio).min(ALWAYS_SLIDING),
-            seconds: TimeRange {
-                least: slip,
-                most: slip,
-            },
+            seconds: [slip; 2],
             longest: slip.max(sliding - at_rest),
             exponents: [0.35, -0.1],
         })
@@ -152,25 +111,17 @@ impl SlipTime {
         let longer = (sliding - at_rest).max(0.0);
         Self {
             front_ratio: 1.0,
-            seconds: TimeRange {
-                least: 0.25 * longer,
-                most: longer,
-            },
+            seconds: [0.25 * longer, longer],
             longest: longer,
             exponents: [0.4; 2],
         }
     }
 
     /// Bounds of the time at this V* N.
-    fn at(&self, front_ratio: f64) -> TimeRange {
-        let slower = front_ratio / self.front_ratio;
-        let [least, most] = self
-            .exponents
-            .map(|exponent| libm::pow(slower.min(1.0), exponent));
-        TimeRange {
-            least: least * self.seconds.least,
-            most: (most * self.seconds.most).min(self.longest),
-        }
+    fn at(&self, front_ratio: f64) -> [f64; 2] {
+        let slower = (front_ratio / self.front_ratio).min(1.0);
+        let bound = |k: usize| libm::pow(slower, self.exponents[k]) * self.seconds[k];
+        [bound(0), bound(1).min(self.longest)]
     }
 }
 
@@ -185,12 +136,12 @@ fn sliding(case: &Case) -> State {
 /// Time of a step in s: the shortest of some measurements that start from a state, or from the start of the
 /// case if there is none. The shortest is taken because a slider that begins to move is not at rest at once.
 fn measured(case: &Case, state: Option<State>) -> f64 {
-    let mut steps = Steps::new(case.clone(), state);
+    let mut running = started(case.clone(), state);
     // The first step brings the lattice into the cache.
-    let (mut shortest, _) = steps.seconds(1);
+    let (mut shortest, _) = seconds_of(&mut running, 1);
     let began = thread_time();
     for _ in 0..MEASUREMENTS {
-        shortest = shortest.min(steps.seconds_per_step());
+        shortest = shortest.min(seconds_per_step(&mut running));
         if thread_time() - began > ENOUGH {
             break;
         }
@@ -198,45 +149,41 @@ fn measured(case: &Case, state: Option<State>) -> f64 {
     shortest
 }
 
-/// Steps of a run, with all that it records.
-struct Steps(Running);
+/// A run of a case, with all that it records, from a state in which blocks slide in every step, or from its
+/// start.
+fn started(case: Case, state: Option<State>) -> Running {
+    let execution = Execution {
+        skips: state.is_none(),
+        ..Execution::default()
+    };
+    Running::start(&Arc::new(case), state, execution)
+}
 
-impl Steps {
-    /// A run of a case from a state in which blocks slide in every step, or from its start.
-    fn new(case: Case, state: Option<State>) -> Self {
-        let execution = Execution {
-            skips: state.is_none(),
-            ..Execution::default()
-        };
-        Self(Running::start(&Arc::new(case), state, execution))
-    }
+/// Time of `steps` steps in s, or of fewer if the run ends, and their number.
+fn seconds_of(running: &mut Running, steps: u64) -> (f64, u64) {
+    let (began, first) = (thread_time(), running.snapshot().step);
+    // A run that diverges has also ended.
+    let _ = running.advance(steps);
+    let made = running.snapshot().step - first;
+    ((thread_time() - began).as_secs_f64(), made)
+}
 
-    /// Time of `steps` steps in s, or of fewer if the run ends, and their number.
-    fn seconds(&mut self, steps: u64) -> (f64, u64) {
-        let (began, first) = (thread_time(), self.0.snapshot().step);
-        // A run that diverges has also ended.
-        let _ = self.0.advance(steps);
-        let made = self.0.snapshot().step - first;
-        ((thread_time() - began).as_secs_f64(), made)
-    }
-
-    /// Time of a step in one measurement, in s; infinite if the run has ended. The clock is read rarely,
-    /// because reading it takes as long as a step of a few blocks.
-    fn seconds_per_step(&mut self) -> f64 {
-        let (mut passed, mut steps) = (0.0, 0);
-        while passed < MEASUREMENT {
-            let (more, made) = self.seconds(steps.max(1));
-            passed += more;
-            steps += made;
-            if made == 0 {
-                break;
-            }
+/// Time of a step in one measurement, in s; infinite if the run has ended. The clock is read rarely, because
+/// reading it takes as long as a step of a few blocks.
+fn seconds_per_step(running: &mut Running) -> f64 {
+    let (mut passed, mut steps) = (0.0, 0);
+    while passed < MEASUREMENT {
+        let (more, made) = seconds_of(running, steps.max(1));
+        passed += more;
+        steps += made;
+        if made == 0 {
+            break;
         }
-        if steps == 0 {
-            f64::INFINITY
-        } else {
-            passed / steps as f64
-        }
+    }
+    if steps == 0 {
+        f64::INFINITY
+    } else {
+        passed / steps as f64
     }
 }
 
@@ -253,10 +200,7 @@ mod tests {
             sliding: 5.0,
             slip: SlipTime {
                 front_ratio: 4.0,
-                seconds: TimeRange {
-                    least: 2.0,
-                    most: 4.0,
-                },
+                seconds: [2.0, 4.0],
                 longest: 4.0,
                 exponents: [1.0, -0.5],
             },
@@ -268,14 +212,9 @@ mod tests {
                 stands,
             })
         };
-        let range = |least: f64, most: f64| TimeRange { least, most };
-        assert_eq!(of(4.0, false), range(30.0, 100.0));
-        assert_eq!(of(1.0, false), range(15.0, 100.0));
+        assert_eq!(of(4.0, false), [30.0, 100.0]);
+        assert_eq!(of(1.0, false), [15.0, 100.0]);
         assert_eq!(of(9.0, false), of(4.0, false));
-        assert_eq!(of(1.0, true), range(15.0, f64::INFINITY));
-        assert_eq!(
-            serde_json::to_value(of(1.0, true)).unwrap().to_string(),
-            "[15.0,null]"
-        );
+        assert_eq!(of(1.0, true), [15.0, f64::INFINITY]);
     }
 }

@@ -12,7 +12,7 @@ pub(crate) enum FrictionUnit {
 }
 
 impl FrictionUnit {
-    pub(crate) fn of(scales: &Scales, model: &Model) -> Self {
+    pub(crate) fn new(scales: &Scales, model: &Model) -> Self {
         let force = scales.force() * model.mu_star_divisor();
         match &model.drive.rotation {
             None => Self::Force(force),

@@ -3,10 +3,13 @@
 use std::ops::RangeInclusive;
 
 use slipfront::communicator::Communicator;
+use slipfront::lattice::shear_wave_speed;
 use slipfront::observe::frames::kept;
 use slipfront::observe::{Front, Quantiles};
 use slipfront::{Edges, Lattice};
 use slipfront_case::case::Case;
+
+use crate::summary::{NucleationSummary, Summary};
 
 /// Largest number of blocks from which the front is found; of a larger lattice, every n-th block along each
 /// axis is used. The first rank holds the times of all these blocks.
@@ -18,44 +21,31 @@ const PART: usize = 1 << 17;
 /// Marks a block without contact, in place of its time.
 const NO_CONTACT: f64 = f64::INFINITY;
 
-/// The front in units of this model: lengths in blocks, times t*. For a slider driven at an edge, all but the
-/// sites belong to the event that crosses it.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct LatticeFront {
-    pub(crate) nucleations: Vec<Nucleation>,
-    pub(crate) speed: Option<Quantiles>,
-    pub(crate) share: Option<f64>,
-    pub(crate) duration_star: Option<f64>,
-}
-
-/// Place and time at which slip has nucleated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Nucleation {
-    /// Middle of the first block.
-    pub(crate) place: [f64; 2],
-    pub(crate) time_star: f64,
-}
-
-/// The front of a run, from the first slips of the blocks that this rank holds. Only the first rank returns
-/// it; none if nothing has slipped. The front passes in the range `during` of t*. For a slider driven at an
-/// edge, this is a single event, because between two events slip spreads as fast as the drive loads the
-/// slider. All ranks must call this together.
-pub(crate) fn of_ranks(
+/// Adds the front to a summary on the first rank, from the first slips of the blocks that each rank holds;
+/// the summary stays as it is if nothing has slipped. The front passes in the range `during` of t*. For a
+/// slider driven at an edge, this is a single event, because between two events slip spreads as fast as the
+/// drive loads the slider. All ranks must call this together.
+pub(crate) fn add_front(
+    summary: &mut Summary,
     case: &Case,
     first_slips: &[f64],
     during: RangeInclusive<f64>,
     communicator: &dyn Communicator,
-) -> Option<LatticeFront> {
-    of_thinned(case, first_slips, during, communicator, MAX_BLOCKS)
+) {
+    // Without a front, there is nothing to add.
+    let _ = add_thinned(summary, case, first_slips, during, communicator, MAX_BLOCKS);
 }
 
-fn of_thinned(
+/// Adds the front as it follows from at most `most` blocks; none if nothing has slipped, and on ranks other
+/// than the first.
+fn add_thinned(
+    summary: &mut Summary,
     case: &Case,
     first_slips: &[f64],
     during: RangeInclusive<f64>,
     communicator: &dyn Communicator,
     most: usize,
-) -> Option<LatticeFront> {
+) -> Option<()> {
     let lattice = &case.model.lattice;
     let counts = |stride: usize| [lattice.nx, lattice.ny].map(|count| kept(0..count, stride).len());
     let stride = (1..).find(|&stride| counts(stride).iter().product::<usize>() <= most)?;
@@ -81,36 +71,51 @@ fn of_thinned(
         }
     };
     let looked_at = Lattice::with_edges(nx, ny, [edges(0), edges(1)]);
-    let whole = Front::of(&looked_at, &times, n_contact)?;
+    let whole = Front::find(&looked_at, &times, n_contact)?;
+    let scales = &case.scales;
     let nucleation = |&block: &usize| {
         let (i, j) = looked_at.column_row(block);
-        Nucleation {
-            place: [i, j].map(|index| (index * stride) as f64 + 0.5),
+        // The middle of the first block.
+        let [x_m, y_m] = [i, j].map(|index| ((index * stride) as f64 + 0.5) * scales.block_size);
+        NucleationSummary {
+            x_m,
+            y_m,
             time_star: times[block],
         }
     };
-    let nucleations = whole.nucleations.iter().map(nucleation).collect();
+    summary.nucleations = whole.nucleations.iter().map(nucleation).collect();
+    summary.nucleation_sites = Some(summary.nucleations.len());
+    let first = summary.nucleations.first();
+    summary.nucleation_x_m = first.map(|nucleation| nucleation.x_m);
+    summary.nucleation_y_m = first.map(|nucleation| nucleation.y_m);
     let is_other = |time: &f64| !time.is_nan() && !during.contains(time);
     let front = if times.iter().any(is_other) {
         for time in times.iter_mut().filter(|time| is_other(time)) {
             *time = f64::NAN;
         }
-        Front::of(&looked_at, &times, n_contact)
+        Front::find(&looked_at, &times, n_contact)
     } else {
         Some(whole)
     };
-    let speed = front.as_ref().and_then(|front| front.speed);
-    let wider = |speed: f64| speed * stride as f64;
-    Some(LatticeFront {
-        nucleations,
-        speed: speed.map(|speed| Quantiles {
-            low: wider(speed.low),
-            median: wider(speed.median),
-            high: wider(speed.high),
-        }),
-        share: front.as_ref().and_then(|front| front.share),
-        duration_star: front.map(|front| front.duration),
-    })
+    let front = front?;
+    let speeds = |unit: f64| {
+        let speed = |of: fn(Quantiles) -> f64| front.speed.map(|speed| of(speed) * stride as f64 * unit);
+        [speed(|s| s.median), speed(|s| s.low), speed(|s| s.high)]
+    };
+    [
+        summary.front_speed_c_s,
+        summary.front_speed_low_c_s,
+        summary.front_speed_high_c_s,
+    ] = speeds(1.0 / shear_wave_speed());
+    [
+        summary.front_speed_m_s,
+        summary.front_speed_low_m_s,
+        summary.front_speed_high_m_s,
+    ] = speeds(scales.block_size / scales.time());
+    summary.front_share = front.share;
+    summary.front_duration_star = Some(front.duration);
+    summary.front_duration_s = Some(front.duration * scales.time());
+    Some(())
 }
 
 /// The times of every `stride`-th block of each axis, on the first rank; nothing on the others.
@@ -226,13 +231,20 @@ mod tests {
     fn a_large_lattice_is_thinned() {
         let case = Case::parse("slider.blocks = [61, 40]", "case", "", &[]).unwrap();
         let times: Vec<f64> = (0..61 * 40).map(|b| f64::from(b % 61) / 0.7).collect();
-        let whole = of_ranks(&case, &times, 0.0..=f64::INFINITY, &Alone).unwrap();
+        let unit = shear_wave_speed();
+        let of = |most| {
+            let mut summary = Summary::default();
+            add_thinned(&mut summary, &case, &times, 0.0..=f64::INFINITY, &Alone, most).unwrap();
+            summary
+        };
+        let whole = of(MAX_BLOCKS);
         for most in [61 * 40, 61 * 40 - 1, 300] {
-            let front = of_thinned(&case, &times, 0.0..=f64::INFINITY, &Alone, most).unwrap();
-            let (one, other) = (whole.speed.unwrap(), front.speed.unwrap());
-            assert!((one.median - 0.7).abs() < 1e-12 && (other.median - 0.7).abs() < 1e-12);
+            let front = of(most);
+            for summary in [&whole, &front] {
+                assert!((summary.front_speed_c_s.unwrap() * unit - 0.7).abs() < 1e-12);
+            }
             assert_eq!(front.nucleations, whole.nucleations);
-            assert_eq!(front.nucleations[0].place, [0.5; 2]);
+            assert_eq!(front.nucleations[0].x_m, 0.5 * case.scales.block_size);
         }
     }
 }

@@ -14,11 +14,7 @@ pub mod checksum;
 pub mod clock;
 pub mod columns;
 #[cfg(not(target_family = "wasm"))]
-pub mod device_curves;
-#[cfg(not(target_family = "wasm"))]
-pub mod device_runs;
-#[cfg(not(target_family = "wasm"))]
-pub mod device_summaries;
+pub mod device;
 pub mod error;
 pub mod estimate_cost;
 pub mod export;

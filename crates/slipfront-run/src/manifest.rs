@@ -155,7 +155,7 @@ impl Processors {
 
 impl Manifest {
     /// Manifest of a run that has just finished and has written these files.
-    pub(crate) fn of(
+    pub(crate) fn new(
         files: Vec<ManifestFile>,
         case: &Case,
         started: jiff::Timestamp,
@@ -319,23 +319,23 @@ pub fn is_one_of<'a>(
     if !found.is_file() || alike.is_empty() {
         return Ok(Some(false));
     }
-    let found = ManifestFile::of(folder, name)?;
+    let found = ManifestFile::read(folder, name)?;
     Ok(Some(alike.contains(&&found)))
 }
 
 impl ManifestFile {
     /// A regular file of a folder as it is now.
-    pub fn of(folder: &Path, name: &str) -> std::io::Result<Self> {
-        Self::of_until(folder, name, &AtomicBool::new(false))
+    pub fn read(folder: &Path, name: &str) -> std::io::Result<Self> {
+        Self::read_until(folder, name, &AtomicBool::new(false))
     }
 
     /// A regular file of a folder as it is now; an error as soon as `stop` is set.
-    pub fn of_until(folder: &Path, name: &str, stop: &AtomicBool) -> std::io::Result<Self> {
-        Self::of_beginning(folder, name, u64::MAX, stop)
+    pub fn read_until(folder: &Path, name: &str, stop: &AtomicBool) -> std::io::Result<Self> {
+        Self::read_beginning(folder, name, u64::MAX, stop)
     }
 
     /// The first bytes, at most `most`, of a regular file as it is now; an error as soon as `stop` is set.
-    pub fn of_beginning(folder: &Path, name: &str, most: u64, stop: &AtomicBool) -> std::io::Result<Self> {
+    pub fn read_beginning(folder: &Path, name: &str, most: u64, stop: &AtomicBool) -> std::io::Result<Self> {
         let mut hasher = blake3::Hasher::new();
         let file = open_regular(&folder.join(name))?;
         hasher.update_reader(Until { file, stop }.take(most))?;
@@ -343,7 +343,7 @@ impl ManifestFile {
     }
 
     /// The entry with this name for a file that still has another name.
-    pub fn of_copy(name: &str, copy: &Path) -> std::io::Result<Self> {
+    pub fn read_copy(name: &str, copy: &Path) -> std::io::Result<Self> {
         let mut hasher = blake3::Hasher::new();
         hasher.update_reader(File::open(copy)?)?;
         Ok(Self::hashed(name, &hasher))

@@ -1,10 +1,10 @@
 //! A measured record: two columns of a table, such as force against time.
 
+mod column_names;
 mod columns;
 mod correction;
 mod error;
 mod measure;
-mod names;
 mod workbook;
 
 use std::io::Read;
@@ -18,11 +18,12 @@ use slipfront_case::table::{
     HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, clock_time, has_thousands, number, segment,
 };
 
+use self::column_names::{ColumnName, is_coefficient, units_of};
+use self::columns::layout_of;
 pub use self::columns::{TableColumn, columns_of, is_displacement, suggested};
 pub use self::correction::Correction;
 pub use self::error::MeasuredError;
 pub use self::measure::Measure;
-use self::names::{ColumnName, is_coefficient, units_of};
 
 /// A column as a user names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -61,7 +62,7 @@ pub struct MeasuredRecord {
     /// Whether the abscissae are times or displacements.
     pub along: Measure,
     /// Whether the ordinates are forces or coefficients.
-    pub of: Measure,
+    pub quantity: Measure,
     /// How the table was read, if it is not a plain one: a sentence without its full stop.
     pub took: Option<String>,
     /// Which lines at the end of the table have no numbers, if there are some: a sentence without its full
@@ -85,12 +86,12 @@ struct Found {
 
 impl MeasuredRecord {
     /// A record of these numbers, read from no table.
-    pub fn new(x: Vec<f64>, y: Vec<f64>, along: Measure, of: Measure) -> Self {
+    pub fn new(x: Vec<f64>, y: Vec<f64>, along: Measure, quantity: Measure) -> Self {
         Self {
             x,
             y,
             along,
-            of,
+            quantity,
             took: None,
             footer: None,
             averaged: None,
@@ -143,25 +144,15 @@ impl MeasuredRecord {
         options: TableOptions,
         shown: &[[bool; 2]],
     ) -> Result<Self, MeasuredError> {
-        let failed = |source: TableError| MeasuredError::Table {
-            path: path.to_owned(),
-            source,
-        };
-        let unreadable = |source: std::io::Error| MeasuredError::Unreadable {
-            path: path.to_owned(),
-            source,
-        };
-        let mut head = Vec::new();
-        let read = open().and_then(|table| table.take(head_bytes).read_to_end(&mut head));
-        read.map_err(unreadable)?;
-        if workbook::is_workbook(&head) {
+        let failed = MeasuredError::of_table(path);
+        let read = |most: u64| {
             let mut bytes = Vec::new();
-            let read = open().and_then(|book| book.take(workbook::MOST_BYTES + 1).read_to_end(&mut bytes));
-            read.map_err(unreadable)?;
-            let sheet = workbook::sheet(&bytes).map_err(|why| MeasuredError::Workbook {
-                path: path.to_owned(),
-                why,
-            })?;
+            let read = open().and_then(|table| table.take(most).read_to_end(&mut bytes));
+            read.map_err(MeasuredError::unreadable(path)).map(|_| bytes)
+        };
+        let head = read(head_bytes)?;
+        if workbook::is_workbook(&head) {
+            let sheet = workbook::sheet(&read(workbook::MOST_BYTES + 1)?, path)?;
             let open = || Ok(Box::new(sheet.text.as_bytes()) as Box<dyn Read>);
             let mut record =
                 Self::read_from((&open, HEAD_BYTES), path, columns, along, options, &sheet.shown)?;
@@ -171,9 +162,7 @@ impl MeasuredRecord {
             return Ok(record);
         }
         if let Some(number) = options.segment {
-            let mut table = Vec::new();
-            let read = open().and_then(|source| source.take(SEGMENTS_MAX_BYTES).read_to_end(&mut table));
-            read.map_err(unreadable)?;
+            let table = read(SEGMENTS_MAX_BYTES)?;
             if table.len() as u64 == SEGMENTS_MAX_BYTES {
                 let most = SEGMENTS_MAX_BYTES >> 20;
                 let why = format!(
@@ -181,7 +170,7 @@ impl MeasuredRecord {
                 );
                 return Err(failed(std::io::Error::other(why).into()));
             }
-            let text = segment(&table, number).map_err(failed)?;
+            let text = segment(&table, number).map_err(&failed)?;
             let open = || Ok(Box::new(text.as_bytes()) as Box<dyn Read>);
             let options = TableOptions {
                 segment: None,
@@ -191,8 +180,7 @@ impl MeasuredRecord {
             let source = (&open as &dyn Fn() -> _, text.len() as u64);
             return Self::read_from(source, path, columns, along, options, shown);
         }
-        let layout = TableLayout::find(&head, options).map_err(failed)?;
-        layout.check_names().map_err(failed)?;
+        let layout = layout_of(&head, path, options)?;
         let mut record = Self {
             took: layout
                 .took()
@@ -211,16 +199,18 @@ impl MeasuredRecord {
         let mut has_numbers = false;
         // Ordinates as the table has them.
         let mut extremes = Extremes::default();
-        let mut beyond = None;
         let mut first_fall = None;
-        // The first line without numbers after the last one with numbers, and the number of such lines.
-        let mut footer: Option<(NoNumber, usize)> = None;
-        while let Some((line, fields)) = rows.next_row().map_err(failed)? {
+        // The first line without numbers after the last one with numbers, the error about it, and the number
+        // of such lines.
+        let mut footer: Option<(u64, MeasuredError, usize)> = None;
+        while let Some((line, fields)) = rows.next_row().map_err(&failed)? {
             if fields.iter().all(|field| field.is_empty()) {
                 continue;
             }
             let mut value = |k: usize| {
-                let field = fields.get(places[k])?;
+                let Some(field) = fields.get(places[k]) else {
+                    return Ok(None);
+                };
                 let clock = clock_time(field).filter(|_| k == 0 && along == Measure::Time);
                 if let Some(clock) = clock {
                     let (first, last) = clocks.get_or_insert((clock, clock));
@@ -229,28 +219,27 @@ impl MeasuredRecord {
                         midnights += DAY;
                     }
                     *last = clock;
-                    return Some(clock + midnights - *first);
+                    return Ok(Some(clock + midnights - *first));
                 }
-                let value = number(field, decimal).filter(|value| value.is_finite())?;
+                let Some(value) = number(field, decimal).filter(|value| value.is_finite()) else {
+                    return Ok(None);
+                };
                 if value.abs() > MAX_READING {
-                    beyond.get_or_insert((line, value, k));
+                    return MeasuredError::refuse(format!(
+                        "line {line} of {} has {value:e} in column `{}`, as meters write where their range is exceeded: remove such \
+                         lines, or begin them with #",
+                        display_path(path),
+                        columns[k].name
+                    ));
                 }
                 if k == 1 {
                     extremes.add(&[value]);
                 }
                 has_numbers |= k == 0;
                 let factors = [*x_factor.as_ref().unwrap_or(&1.0), y_factor];
-                Some(factors[k] * value)
+                Ok(Some(factors[k] * value))
             };
-            let read = (value(0), value(1));
-            if let Some((line, value, k)) = beyond {
-                return Err(MeasuredError::Overload {
-                    path: path.to_owned(),
-                    line,
-                    column: columns[k].name.clone(),
-                    value,
-                });
-            }
+            let read = (value(0)?, value(1)?);
             let (Some(x), Some(y)) = read else {
                 let without = usize::from(read.0.is_some());
                 // Numbers with thousands separators often occur only at the end, where they must not be
@@ -260,16 +249,20 @@ impl MeasuredRecord {
                     let text = field.to_string();
                     return Err(failed(TableError::Thousands { line, text }));
                 }
-                let first = || NoNumber {
-                    line,
-                    text: truncated(&fields.join(&layout.separator.to_string())),
-                    column: columns[without].name.clone(),
+                let no_number = || {
+                    MeasuredError::Refused(format!(
+                        "line {line} of {}, {:?}, has no number in column `{}`: write one, remove the line, begin it with #, or \
+                         choose one of several segments by `segment`",
+                        display_path(path),
+                        truncated(&fields.join(&layout.separator.to_string())),
+                        columns[without].name
+                    ))
                 };
-                footer.get_or_insert_with(|| (first(), 0)).1 += 1;
+                footer.get_or_insert_with(|| (line, no_number(), 0)).2 += 1;
                 continue;
             };
-            if let Some((line, _)) = footer {
-                return Err(line.error(path));
+            if let Some((_, no_number, _)) = footer {
+                return Err(no_number);
             }
             if let Some(&before) = record.x.last().filter(|before| x < **before) {
                 first_fall.get_or_insert((line, before, x));
@@ -281,18 +274,19 @@ impl MeasuredRecord {
             x_factor?;
         }
         match (record.x.len(), footer) {
-            (0..2, Some((line, _))) => return Err(line.error(path)),
+            (0..2, Some((_, no_number, _))) => return Err(no_number),
             (found @ 0..2, None) => {
-                let path = path.to_owned();
-                return Err(MeasuredError::TooShort { path, found });
+                return MeasuredError::refuse(format!(
+                    "{} has {found} lines of numbers; a record needs at least two",
+                    display_path(path)
+                ));
             }
             (_, None) => {}
-            (_, Some((first, lines))) => {
+            (_, Some((first, _, lines))) => {
                 record.footer = Some(format!(
-                    "{} ends with {} without numbers, starting at line {}",
+                    "{} ends with {} without numbers, starting at line {first}",
                     display_path(path),
-                    count(lines, "line"),
-                    first.line
+                    count(lines, "line")
                 ));
             }
         }
@@ -301,16 +295,19 @@ impl MeasuredRecord {
             && first == last
             && first_fall.is_none()
         {
-            let path = path.to_owned();
-            return Err(MeasuredError::NoLength { path, at: first });
+            return MeasuredError::refuse(format!(
+                "{} has the same time or displacement, {first} in SI units, in all lines: choose another column",
+                display_path(path)
+            ));
         }
-        if let Some((line, before, value)) = first_fall {
-            record.average_over_noise().ok_or_else(|| MeasuredError::Falls {
-                path: path.to_owned(),
-                line,
-                before,
-                value,
-            })?;
+        if let Some((line, before, value)) = first_fall
+            && record.average_over_noise().is_none()
+        {
+            return MeasuredError::refuse(format!(
+                "line {line} of {}: the time or displacement decreases from {before} to {value} in SI units; keep the lines of a \
+                 single step of the test, such as by `segment`",
+                display_path(path)
+            ));
         }
         Ok(record)
     }
@@ -407,25 +404,23 @@ impl MeasuredRecord {
                 continue;
             };
             let unit = given[k].or(units[k].as_deref());
-            let is_share = unit.is_none_or(|unit| Measure::Coefficient.factor(unit).is_some());
+            let is_share = unit.is_none_or(|unit| Measure::Coefficient.has_unit(unit));
             if *has_plain || !is_share || k == 0 {
-                return Err(MeasuredError::Percentages {
-                    path: path.to_owned(),
-                    column: columns[k].name.clone(),
-                    why: match *has_plain {
-                        true => "shows some of its numbers as percentages and others not",
-                        false => "shows its numbers as percentages, and is no coefficient",
-                    },
-                });
+                let why = match *has_plain {
+                    true => "shows some of its numbers as percentages and others not",
+                    false => "shows its numbers as percentages, and is no coefficient",
+                };
+                return MeasuredError::refuse(format!(
+                    "column `{}` of {} {why}: give its cells the number format General, and the column the unit that they then have",
+                    columns[k].name,
+                    display_path(path)
+                ));
             }
             given[k] = Some("1");
         }
         let [_, given_y] = given;
-        if Measure::Coefficient
-            .factor(given_y.or(units[1].as_deref()).unwrap_or("N"))
-            .is_some()
-        {
-            self.of = Measure::Coefficient;
+        if Measure::Coefficient.has_unit(given_y.or(units[1].as_deref()).unwrap_or("N")) {
+            self.quantity = Measure::Coefficient;
         }
         let name_of = |k: usize| {
             let named = names.get(places[k]).filter(|name| !name.whole.is_empty());
@@ -441,7 +436,7 @@ impl MeasuredRecord {
         Ok(Found {
             places,
             x_factor: factor(0, self.along, "x"),
-            y_factor: factor(1, self.of, "y")?,
+            y_factor: factor(1, self.quantity, "y")?,
         })
     }
 }
@@ -458,25 +453,6 @@ fn far_off(extremes: &Extremes, points: usize, path: &Path, column: &str) -> Opt
         truncated(column),
         count(points, "point")
     ))
-}
-
-/// A line without a number in one of the columns.
-struct NoNumber {
-    line: u64,
-    text: String,
-    column: String,
-}
-
-impl NoNumber {
-    fn error(self, path: &Path) -> MeasuredError {
-        let Self { line, text, column } = self;
-        MeasuredError::NoNumber {
-            path: path.to_owned(),
-            line,
-            text,
-            column,
-        }
-    }
 }
 
 /// Position of a column among `n`: the one with exactly this name, else the one with this name apart from the
@@ -504,28 +480,32 @@ fn place_of(
             [place] => return Ok(*place),
             places => {
                 let numbers: Vec<String> = places.iter().map(|place| (place + 1).to_string()).collect();
-                return Err(MeasuredError::Several {
-                    path: path.to_owned(),
-                    name: truncated(wanted),
-                    columns: numbers.join(", "),
-                    number: places[0] + 1,
-                });
+                return MeasuredError::refuse(format!(
+                    "{} has `{}` in several columns, {}: give the number of a column, such as {}",
+                    display_path(path),
+                    truncated(wanted),
+                    numbers.join(", "),
+                    numbers[0]
+                ));
             }
         }
     }
     match wanted.parse::<usize>() {
         Ok(number) if (1..=n).contains(&number) => Ok(number - 1),
-        _ => Err(MeasuredError::Column {
-            path: path.to_owned(),
-            name: truncated(wanted),
-            known: match names {
+        _ => {
+            let known = match names {
                 [] => format!("it has no header; its columns are 1 to {n}"),
                 names => {
                     let names: Vec<&str> = names.iter().map(|name| name.whole).collect();
                     format!("its columns are {}, or 1 to {n}", truncated(&names.join(", ")))
                 }
-            },
-        }),
+            };
+            MeasuredError::refuse(format!(
+                "{} has no column `{}`: {known}",
+                display_path(path),
+                truncated(wanted)
+            ))
+        }
     }
 }
 
@@ -540,10 +520,12 @@ fn factor(
 ) -> Result<f64, MeasuredError> {
     let shown = || truncated(shown);
     if let Some(unit) = &column.unit {
-        return measure.factor(unit).ok_or_else(|| MeasuredError::Unit {
-            path: path.to_owned(),
-            column: shown(),
-            why: measure.no_such_unit(unit),
+        return measure.factor(unit).or_else(|why| {
+            MeasuredError::refuse(format!(
+                "the unit of column `{}` of {}: {why}",
+                shown(),
+                display_path(path)
+            ))
         });
     }
     // Units in names are in lower case: force_n, time_ms. If case matters, as for mN and MN, the unit must be
@@ -553,7 +535,7 @@ fn factor(
         (Measure::Force, "kn") => Some(1e3),
         _ => None,
     };
-    let found = in_table.and_then(|unit| measure.factor(unit).or_else(|| of_name(unit)));
+    let found = in_table.and_then(|unit| measure.factor(unit).ok().or_else(|| of_name(unit)));
     found.ok_or_else(|| match in_table {
         Some(unit) if !unit.is_empty() => MeasuredError::OtherUnit {
             path: path.to_owned(),
@@ -826,7 +808,10 @@ mod tests {
     #[test_case("t (s),mu\n0,0.5\n2,1\n", Some("1"); "given")]
     fn the_unit_1_is_that_of_a_coefficient(text: &str, unit: Option<&str>) {
         let record = read(text, ["t", "mu"], [None, unit]).unwrap();
-        assert_eq!((record.of, record.y), (Measure::Coefficient, vec![0.5, 1.0]));
+        assert_eq!(
+            (record.quantity, record.y),
+            (Measure::Coefficient, vec![0.5, 1.0])
+        );
     }
 
     #[test_case(

@@ -1,18 +1,17 @@
 //! Writes the files of a run from its [`RunData`].
 
-use std::borrow::Cow;
-use std::io::Cursor;
+use std::io::{self, Cursor};
 use std::path::Path;
 
-use slipfront::Outline;
 use slipfront::communicator::{Alone, Communicator};
 use slipfront::observe::Frame;
+use slipfront::observe::frames::kept;
 use slipfront_base::disk;
 use slipfront_case::case::Case;
 use tempfile::TempPath;
 
 use crate::error::ResultsError;
-use crate::fields::{self, FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields};
+use crate::fields::{self, FieldFrame, FieldsData, FieldsWriter, thin};
 use crate::final_state;
 use crate::folder_error::FolderError;
 use crate::names::{CASE, FIELDS, KYMOGRAPH, SERIES, STATE, SUMMARY};
@@ -41,11 +40,15 @@ pub fn write_blocks(
     out: &Path,
     communicator: &dyn Communicator,
 ) -> Result<Vec<(&'static str, TempPath)>, ResultsError> {
-    let fields = write_fields(case, data, out, communicator)?.map(|file| (FIELDS, file));
-    let mut files: Vec<_> = fields.into_iter().collect();
+    let temporary = Unfinished::in_folder(out).temporary();
+    let frames = std::mem::take(&mut data.frames);
+    let fields = fields_of(case, data, frames);
+    let file = fields::write_fields(&temporary, &out.join(FIELDS), &fields, communicator)?;
+    drop(fields);
+    let mut files = Vec::from_iter(file.map(|file| (FIELDS, file)));
     if let Some(state) = data.final_state.take() {
         let file = write_shared(
-            &Unfinished::of(out).temporary(),
+            &temporary,
             communicator,
             |output| final_state::create(case, output),
             |output| final_state::write_rows(case, &state, output),
@@ -94,27 +97,30 @@ pub fn in_memory(case: &Case, data: &mut RunData) -> Result<Vec<(String, Vec<u8>
         files.push((name.to_owned(), contents.to_vec()));
         Ok(())
     })?;
-    let fields = with_fields(case, data, |file| {
-        let mut bytes = Cursor::new(Vec::new());
-        let writer = fields::FieldsWriter::new(Path::new(FIELDS), file)?;
-        let written = writer
-            .create(&mut bytes)
-            .and_then(|()| writer.write_rows(&mut bytes));
-        written.map_err(|source| FieldsError::Write {
-            path: FIELDS.into(),
-            source,
-        })?;
-        Ok(bytes.into_inner())
-    })?;
-    files.push((FIELDS.to_owned(), fields));
+    let frames = std::mem::take(&mut data.frames);
+    let fields = fields_of(case, data, frames);
+    let writer = FieldsWriter::new(&fields);
+    files.push(filled(FIELDS, |bytes| {
+        writer.create(&mut *bytes)?;
+        writer.write_rows(bytes)
+    })?);
     if let Some(state) = data.final_state.take() {
-        let mut bytes = Cursor::new(Vec::new());
-        let written = final_state::create(case, &mut bytes)
-            .and_then(|()| final_state::write_rows(case, &state, &mut bytes));
-        written.map_err(FolderError::write(Path::new(STATE)))?;
-        files.push((STATE.to_owned(), bytes.into_inner()));
+        files.push(filled(STATE, |bytes| {
+            final_state::create(case, bytes)?;
+            final_state::write_rows(case, &state, bytes)
+        })?);
     }
     Ok(files)
+}
+
+/// A file in memory, filled by `fill`.
+fn filled(
+    name: &str,
+    fill: impl FnOnce(&mut Cursor<Vec<u8>>) -> io::Result<()>,
+) -> Result<(String, Vec<u8>), FolderError> {
+    let mut bytes = Cursor::new(Vec::new());
+    fill(&mut bytes).map_err(FolderError::write(Path::new(name)))?;
+    Ok((name.to_owned(), bytes.into_inner()))
 }
 
 /// Writes the case and copies of the files that it reads: enough to run it again.
@@ -126,99 +132,43 @@ pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsErro
     Ok(folder.sync()?)
 }
 
-/// Numbers of all blocks, with `outside` in place of the numbers of blocks that do not exist.
-fn within<'a, T: Copy>(values: &'a [T], outline: Option<&Outline>, outside: T) -> Cow<'a, [T]> {
-    let Some(outline) = outline else {
-        return Cow::Borrowed(values);
-    };
-    let values = values.iter().zip(&outline.exists);
-    values
-        .map(|(value, exists)| if *exists { *value } else { outside })
-        .collect()
-}
-
-/// Constant arrays as they are written: the texture, the static and the kinetic coefficients.
-fn surface_of(case: &Case) -> (Cow<'_, [bool]>, [Cow<'_, [f64]>; 2]) {
-    let (surface, outline) = (&case.model.surface, case.model.slider().outline.as_ref());
-    let coefficients = [&surface.mu_static, &surface.mu_kinetic];
-    (
-        within(&surface.textured, outline, false),
-        coefficients.map(|values| within(values, outline, f64::NAN)),
-    )
-}
-
-/// The content of the [fields file](write_blocks) of a run on one rank.
-pub fn fields_of(case: &Case, data: &RunData) -> FieldsData {
-    let lattice = &case.model.lattice;
-    let (textured, [mu_static, mu_kinetic]) = surface_of(case);
-    let (names, scale) = (&case.output.fields, data.contact_stress_max);
-    let frame = |(label, frame): &(String, Frame)| {
-        FieldFrame::in_si_units(frame.clone(), label.clone(), names, &case.scales, scale)
-    };
-    let stride = case.output.stride;
-    let thinned = |values: &[f64]| fields::thin(values, lattice.nx, stride).collect();
+/// The content of the [fields file](write_blocks) of a run with these frames, in the rows that this rank
+/// holds.
+pub fn fields_of(case: &Case, data: &RunData, frames: Vec<(String, Frame)>) -> FieldsData {
+    let (lattice, surface, output) = (&case.model.lattice, &case.model.surface, &case.output);
+    let scale = data.contact_stress_max;
+    let frame = |(label, frame)| FieldFrame::in_si_units(frame, label, &output.fields, &case.scales, scale);
     FieldsData {
         nx: lattice.nx,
         ny: lattice.ny,
-        stride,
+        stride: output.stride,
+        first_row: kept(case.model.rows.clone(), output.stride).start,
         block_size: case.scales.block_size,
         time_unit_s: case.scales.time(),
-        names: names.clone(),
-        textured: fields::thin(&textured, lattice.nx, stride).collect(),
-        mu_static: thinned(&mu_static),
-        mu_kinetic: thinned(&mu_kinetic),
-        first_slip_time_star: thinned(&data.first_slip_time_star),
-        frames: data.frames.iter().map(frame).collect(),
+        names: output.fields.clone(),
+        textured: thinned(case, &surface.textured, false),
+        mu_static: thinned(case, &surface.mu_static, f64::NAN),
+        mu_kinetic: thinned(case, &surface.mu_kinetic, f64::NAN),
+        first_slip_time_star: thinned(case, &data.first_slip_time_star, f64::NAN),
+        frames: frames.into_iter().map(frame).collect(),
     }
 }
 
-/// Writes the fields to a temporary file of the run in folder `out`, with each rank writing its own rows.
-/// Only the first rank returns the file. The fields are moved out of the data.
-fn write_fields(
-    case: &Case,
-    data: &mut RunData,
-    out: &Path,
-    communicator: &dyn Communicator,
-) -> Result<Option<TempPath>, FieldsError> {
-    with_fields(case, data, |file| {
-        fields::write_fields(
-            &Unfinished::of(out).temporary(),
-            &out.join(FIELDS),
-            file,
-            communicator,
-        )
-    })
-}
-
-/// Passes the fields of the rows that this rank holds to `write`; they are moved out of the data.
-fn with_fields<T>(
-    case: &Case,
-    data: &mut RunData,
-    write: impl FnOnce(&FieldsFile) -> Result<T, FieldsError>,
-) -> Result<T, FieldsError> {
-    let (textured, [mu_static, mu_kinetic]) = surface_of(case);
-    let names = &case.output.fields;
-    let scale = data.contact_stress_max;
-    let frames: Vec<FieldFrame> = std::mem::take(&mut data.frames)
-        .into_iter()
-        .map(|(label, frame)| FieldFrame::in_si_units(frame, label, names, &case.scales, scale))
-        .collect();
-    write(&FieldsFile {
-        nx: case.model.lattice.nx,
-        ny: case.model.lattice.ny,
-        rows: case.model.rows.clone(),
-        stride: case.output.stride,
-        block_size: case.scales.block_size,
-        time_unit_s: case.scales.time(),
-        names,
-        statics: StaticFields {
-            textured: &textured,
-            mu_static: &mu_static,
-            mu_kinetic: &mu_kinetic,
-            first_slip_time_star: &data.first_slip_time_star,
-        },
-        frames: &frames,
-    })
+/// The values of blocks that a fields file keeps, with `outside` for blocks that do not exist.
+fn thinned<T: Copy>(case: &Case, values: &[T], outside: T) -> Vec<T> {
+    let (model, stride) = (&case.model, case.output.stride);
+    let nx = model.lattice.nx;
+    // Values of the rows before the first one that is kept.
+    let skipped = (kept(model.rows.clone(), stride).start * stride - model.rows.start) * nx;
+    let values = thin(values.get(skipped..).unwrap_or_default(), nx, stride);
+    let Some(outline) = &model.slider().outline else {
+        return values.collect();
+    };
+    let exists = thin(outline.exists.get(skipped..).unwrap_or_default(), nx, stride);
+    let values = values.zip(exists);
+    values
+        .map(|(value, exists)| if exists { value } else { outside })
+        .collect()
 }
 
 #[cfg(test)]
@@ -280,7 +230,7 @@ mod tests {
         let overrides: Vec<String> = overrides.iter().map(|&set| set.to_owned()).collect();
         let text = ENDED.replace("output.final_state = true", "initial.state_file = 'state.npy'");
         let file = CaseFile::parse(&text, "case", &overrides).unwrap();
-        Arc::new(Case::to_run_with(file, "case", files, &mut |_| true, Ranks::ALONE).unwrap())
+        Arc::new(Case::to_run(file, "case", files, &mut |_| true, Ranks::ALONE).unwrap())
     }
 
     /// Displacements since rest, m, of a run that was begun when the driven ends had moved by `path` along x.
@@ -352,7 +302,7 @@ mod tests {
         let expected = last_state(&Arc::new(Case::parse(ENDED, "case", "", &[]).unwrap()));
         for size in [2, 3, 7] {
             let folder = tempfile::tempdir().unwrap();
-            Unfinished::of(folder.path()).create().unwrap();
+            Unfinished::in_folder(folder.path()).create().unwrap();
             let files = Threads::run(size, |communicator| {
                 let ranks = Ranks {
                     communicator,
@@ -390,7 +340,7 @@ mod tests {
         let case = Case::parse(text, "case", "", &[]).unwrap();
         let case = Arc::new(case);
         let mut data = run(&case, 1).unwrap();
-        let in_memory = fields_of(&case, &data);
+        let in_memory = fields_of(&case, &data, data.frames.clone());
         let out = folder.path().join("out");
         let mut folder = RunFolder::prepare(&out, false, &case.inputs).unwrap();
         write_case(&case, &mut folder).unwrap();

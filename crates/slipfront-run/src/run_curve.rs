@@ -35,6 +35,27 @@ impl RunCurve {
     }
 }
 
+/// A case whose curve is wanted.
+#[derive(Clone, Debug)]
+pub struct CurveCase {
+    /// Case of the run.
+    pub case: Case,
+    /// Abscissa of the curve.
+    pub along: Measure,
+    /// Time in s or displacement in m up to which the case is run.
+    pub end: f64,
+}
+
+impl CurveCase {
+    /// Runs the case as [`run_curve_unless`] does.
+    ///
+    /// # Errors
+    /// When the run diverges.
+    pub fn curve_unless(&self, ends: &dyn Fn() -> bool) -> Option<Result<RunCurve, RunError>> {
+        run_curve_unless(&self.case, self.along, self.end, ends)
+    }
+}
+
 /// Records friction, time and path of every step.
 pub(crate) struct Tracing {
     time_star: Vec<f64>,
@@ -129,7 +150,7 @@ pub fn steps_to(case: &Case, along: Measure, end: f64) -> u64 {
 
 /// Friction force at mu* = 1, N; none for a drive that rotates, because its friction is a torque.
 pub fn unit_force_star(case: &Case) -> Option<f64> {
-    FrictionUnit::of(&case.scales, &case.model).force(1.0)
+    FrictionUnit::new(&case.scales, &case.model).force(1.0)
 }
 
 /// Converts the recorded times, paths and friction of a run to SI units.
@@ -144,6 +165,6 @@ pub(crate) fn in_si_units(case: &Case, traced: Tracing) -> RunCurve {
         time: times(traced.time_star, scales.time()),
         displacement: times(traced.path, scales.displacement()),
         coefficient: times(traced.mu_star, mu_static),
-        unit_force: FrictionUnit::of(scales, &case.model).force(1.0 / mu_static),
+        unit_force: FrictionUnit::new(scales, &case.model).force(1.0 / mu_static),
     }
 }

@@ -8,7 +8,7 @@ use slipfront::observe::{Instants, Scheduled};
 use slipfront::{Execution, RunError, SearchOutcome, Simulation, StopReason};
 use slipfront_case::case::Case;
 
-use crate::running::{add_front, instants_of};
+use crate::running::instants_of;
 use crate::summary::Summary;
 use crate::summary_observers::SummaryObservers;
 
@@ -94,7 +94,7 @@ pub(crate) fn summary(
     let instants = instants.map_or(Vec::new(), Instants::found);
     let mut summary = numbers.end(case, &simulation, reason, &instants);
     let first_slips = simulation.into_first_slip_time_star();
-    add_front(&mut summary, numbers, case, &first_slips, &Alone);
+    numbers.add_front(&mut summary, case, &first_slips, &Alone);
     summary
 }
 

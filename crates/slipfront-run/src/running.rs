@@ -4,7 +4,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use slipfront::communicator::Communicator;
 use slipfront::device::{Device, DeviceError};
 use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{CurveRow, Field, Frame, Frames, Instants, Kinetic, Kymograph, Schedule, Scheduled};
@@ -15,9 +14,8 @@ use slipfront::{
 
 use crate::columns::Columns;
 use crate::fields::FieldFrame;
-use crate::front;
 use crate::manifest::Processors;
-use crate::observers::OptionalObservers;
+use crate::observers::{OptionalObservers, both};
 use crate::summary::Summary;
 use crate::summary_observers::SummaryObservers;
 use slipfront_case::case::{Case, Output, Snapshots};
@@ -79,14 +77,10 @@ pub struct Running {
 pub struct Observers {
     pub(crate) summary: SummaryObservers,
     kymograph: Kymograph,
-    fields: Fields,
-}
-
-/// The snapshots: at the instants A-F, at given times, or both.
-#[derive(Debug, Serialize, Deserialize)]
-struct Fields {
+    /// The snapshots at the instants A-F.
     instants: Option<Box<Instants>>,
-    frames: Option<Frames>,
+    /// The snapshots at given times.
+    snapshots: Option<Frames>,
 }
 
 /// State from which a run can be resumed, without the numbers of its blocks; written as [`Running::state`].
@@ -142,14 +136,11 @@ impl Observers {
     fn new(case: &Case) -> Self {
         let output = &case.output;
         let has_times = !matches!(output.snapshots, Snapshots::Instants);
-        let fields = Fields {
-            instants: instants_of(case, output.fields.clone()).map(Box::new),
-            frames: has_times.then(|| Frames::new(selection(output))),
-        };
         Self {
             summary: SummaryObservers::new(case),
             kymograph: Kymograph::default(),
-            fields,
+            instants: instants_of(case, output.fields.clone()).map(Box::new),
+            snapshots: has_times.then(|| Frames::new(selection(output))),
         }
     }
 
@@ -157,17 +148,11 @@ impl Observers {
     fn belong_to(&self, case: &Case, checkpoint: &Checkpoint) -> bool {
         let step = checkpoint.step;
         let new = Self::new(case);
-        let instants = match (&self.fields.instants, &new.fields.instants) {
-            (Some(old), Some(new)) => old.is_consistent_with(new, step),
-            (old, new) => old.is_none() && new.is_none(),
-        };
-        let frames = match (&self.fields.frames, &new.fields.frames) {
-            (Some(old), Some(new)) => old.is_consistent_with(new, step),
-            (old, new) => old.is_none() && new.is_none(),
-        };
-        instants
-            && frames
-            && self.kymograph.is_consistent_with(&case.model, step)
+        both(&self.instants, &new.instants, |old, new| {
+            old.is_consistent_with(new, step)
+        }) && both(&self.snapshots, &new.snapshots, |old, new| {
+            old.is_consistent_with(new, step)
+        }) && self.kymograph.is_consistent_with(&case.model, step)
             && self
                 .summary
                 .is_consistent_with(&new.summary, checkpoint, case.time_plan.dt_star)
@@ -183,7 +168,7 @@ impl Observers {
             row_length: kept(0..lattice.nx, stride).len() as u64,
             number_bytes: number_bytes as u64,
         };
-        let fields = self.fields.frames().len() * case.output.fields.len();
+        let fields = self.frames().len() * case.output.fields.len();
         let of_event = usize::from(self.paths_before().is_some());
         [
             columns(case.model.n_columns() + of_event, 1, size_of::<f64>()),
@@ -200,10 +185,10 @@ impl Observers {
     fn scheduled(&mut self, snapshots: &Snapshots) -> Vec<Scheduled<'_>> {
         let mut scheduled = self.summary.scheduled();
         scheduled.push(self.kymograph.scheduled());
-        if let Some(instants) = &mut self.fields.instants {
+        if let Some(instants) = &mut self.instants {
             scheduled.push(Scheduled::always(&mut **instants));
         }
-        if let Some(frames) = &mut self.fields.frames {
+        if let Some(frames) = &mut self.snapshots {
             let schedule = match snapshots {
                 Snapshots::Instants => None,
                 Snapshots::At(steps) => Some(Schedule::At(steps.clone())),
@@ -213,13 +198,11 @@ impl Observers {
         }
         scheduled
     }
-}
 
-impl Fields {
     /// The frames that are held at present, in a fixed order.
     fn frames(&self) -> Vec<&Frame> {
         let instants = self.instants.iter().flat_map(|instants| instants.frames());
-        let frames = self.frames.iter().flat_map(|frames| &frames.frames);
+        let frames = self.snapshots.iter().flat_map(|frames| &frames.frames);
         instants.chain(frames).collect()
     }
 
@@ -229,19 +212,14 @@ impl Fields {
             .instants
             .iter_mut()
             .flat_map(|instants| instants.frames_mut());
-        let frames = self.frames.iter_mut().flat_map(|frames| &mut frames.frames);
+        let frames = self.snapshots.iter_mut().flat_map(|frames| &mut frames.frames);
         instants.chain(frames).collect()
     }
 }
 
-/// Rows of the lattice that this process holds.
-fn own_rows(case: &Case) -> Range<usize> {
-    case.model.rows.clone()
-}
-
 /// Rows of fields that this process holds, counted among every `stride`-th row of the lattice.
 fn own_rows_of_fields(case: &Case) -> Range<usize> {
-    kept(own_rows(case), case.output.stride)
+    kept(case.model.rows.clone(), case.output.stride)
 }
 
 /// Number of values of a field that are written and read at once.
@@ -305,7 +283,7 @@ impl Running {
         }
         let [blocks, fields] = observers.columns(case);
         let mut bytes = Vec::new();
-        let first_row = own_rows(case).start;
+        let first_row = case.model.rows.start;
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         let execution = on_useful_threads(case, execution);
         let mut read_blocks = |column: usize, first: usize, values: &mut [f64]| {
@@ -334,7 +312,7 @@ impl Running {
             blocks.offset(blocks.count as usize, 0, 0),
         );
         let mut column = 0;
-        for frame in observers.fields.frames_mut() {
+        for frame in observers.frames_mut() {
             for _ in &case.output.fields {
                 let mut field = vec![0.0; rows.len() * fields.row_length as usize];
                 for (part, values) in field.chunks_mut(PART).enumerate() {
@@ -408,7 +386,7 @@ impl Running {
     /// The instants A-F that are known by now and t* of the drive at each, see [`Instants::by_now`]; none for
     /// a run that keeps snapshots only at given times.
     pub fn instants(&self) -> impl Iterator<Item = (char, f64)> {
-        let instants = self.observers.fields.instants.iter();
+        let instants = self.observers.instants.iter();
         instants.flat_map(|instants| instants.by_now())
     }
 
@@ -480,7 +458,7 @@ impl Running {
     pub fn write_columns<E>(&self, mut write: impl FnMut(u64, &[u8]) -> Result<(), E>) -> Result<(), E> {
         let [blocks, fields] = self.columns();
         let mut bytes = Vec::new();
-        let first_row = own_rows(&self.case).start;
+        let first_row = self.case.model.rows.start;
         let mut write_blocks = |column: usize, first: usize, values: &[f64]| {
             bytes.resize(size_of_val(values), 0);
             for (value, bytes) in values.iter().zip(bytes.as_chunks_mut().0) {
@@ -497,7 +475,7 @@ impl Running {
             own_rows_of_fields(&self.case).start,
             blocks.offset(blocks.count as usize, 0, 0),
         );
-        let frames = self.observers.fields.frames().into_iter();
+        let frames = self.observers.frames().into_iter();
         for (column, field) in frames.flat_map(|frame| &frame.values).enumerate() {
             for (part, values) in field.chunks(PART).enumerate() {
                 bytes.resize(size_of_val(values), 0);
@@ -512,21 +490,16 @@ impl Running {
 
     /// The numbers of a run that has ended; the run itself stays. All ranks must call this together.
     pub fn summary(&self, reason: StopReason) -> Summary {
-        let instants = self.observers.fields.instants.as_deref().cloned();
+        let instants = self.observers.instants.as_deref().cloned();
         let instants = instants.map_or(Vec::new(), Instants::found);
         let mut numbers = self
             .observers
             .summary
             .end(&self.case, &self.simulation, reason, &instants);
         let first_slips = self.snapshot().first_slip_time_star();
+        let communicator = &*self.execution.communicator;
         let observers = &self.observers.summary;
-        add_front(
-            &mut numbers,
-            observers,
-            &self.case,
-            &first_slips,
-            &*self.execution.communicator,
-        );
+        observers.add_front(&mut numbers, &self.case, &first_slips, communicator);
         numbers
     }
 
@@ -537,20 +510,16 @@ impl Running {
         let Observers {
             summary,
             kymograph,
-            fields,
+            instants,
+            snapshots,
         } = self.observers;
-        let instants = fields.instants.map_or(Vec::new(), |instants| instants.found());
-        let frames = fields.frames.map_or(Vec::new(), |frames| frames.frames);
+        let instants = instants.map_or(Vec::new(), |instants| instants.found());
+        let frames = snapshots.map_or(Vec::new(), |frames| frames.frames);
         let mut numbers = summary.end(&case, &simulation, reason, &instants);
         let contact_stress_max = simulation.contact_stress_max();
         let first_slip_time_star = simulation.into_first_slip_time_star();
-        add_front(
-            &mut numbers,
-            &summary,
-            &case,
-            &first_slip_time_star,
-            &*self.execution.communicator,
-        );
+        let communicator = &*self.execution.communicator;
+        summary.add_front(&mut numbers, &case, &first_slip_time_star, communicator);
         RunData {
             model: Arc::clone(&case.model),
             summary: numbers,
@@ -562,21 +531,6 @@ impl Running {
             first_slip_time_star,
             final_state,
         }
-    }
-}
-
-/// Adds the front to the summary, from the first slips of all blocks, if one has passed.
-pub(crate) fn add_front(
-    numbers: &mut Summary,
-    observers: &SummaryObservers,
-    case: &Case,
-    first_slips: &[f64],
-    communicator: &dyn Communicator,
-) {
-    if let Some(during) = observers.times_of_front(numbers.transition)
-        && let Some(front) = front::of_ranks(case, first_slips, during, communicator)
-    {
-        numbers.add_front(&front, case.model.springs(), &case.scales);
     }
 }
 

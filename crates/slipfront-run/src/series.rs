@@ -103,7 +103,7 @@ impl SeriesRow {
         let energy = scales.energy();
         let law = model.friction.needs();
         let viscous_loss = row.energies.viscous_loss * energy;
-        let unit = FrictionUnit::of(scales, model);
+        let unit = FrictionUnit::new(scales, model);
         Self {
             step: row.step,
             time_star: row.time_star,

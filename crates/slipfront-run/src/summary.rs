@@ -250,7 +250,7 @@ pub struct InstantSummary {
 }
 
 impl InstantSummary {
-    pub(crate) fn of((letter, frame): &(char, Frame), is_held: bool) -> Self {
+    pub(crate) fn new((letter, frame): &(char, Frame), is_held: bool) -> Self {
         Self {
             instant: *letter,
             time_star: frame.time_star,

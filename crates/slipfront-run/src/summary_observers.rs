@@ -1,20 +1,18 @@
 //! The observers of the numbers of a run, and the summary that they make at its end.
 
-use std::ops::RangeInclusive;
-
 use serde::{Deserialize, Serialize};
-use slipfront::lattice::SpringStiffness;
-use slipfront::observe::{Curve, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Quantiles, Scheduled};
-use slipfront::{Checkpoint, Scales, Simulation, StopReason};
+use slipfront::communicator::Communicator;
+use slipfront::observe::{Curve, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Scheduled};
+use slipfront::{Checkpoint, Simulation, StopReason};
 use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::{AutoOr, Motion, RunTime};
 
 use crate::friction_unit::FrictionUnit;
-use crate::front::LatticeFront;
+use crate::front::add_front;
 use crate::observers::{OptionalObservers, Times};
 use crate::program::VERSION;
 use crate::run_warnings::{after_run, is_kept_up};
-use crate::summary::{InstantSummary, NucleationSummary, SiSummary, Summary, TopographySummary};
+use crate::summary::{InstantSummary, SiSummary, Summary, TopographySummary};
 
 /// The observers that every run has, and their numbers.
 #[derive(Debug, Serialize, Deserialize)]
@@ -65,15 +63,26 @@ impl SummaryObservers {
         scheduled
     }
 
-    /// The range of t* in which a front passes: all t* of a run with a transition, or the event that crosses
-    /// a slider driven at an edge; none if there is no front.
-    pub(crate) fn times_of_front(&self, transition: bool) -> Option<RangeInclusive<f64>> {
-        let Some(precursors) = &self.optional.precursors else {
-            return transition.then_some(0.0..=f64::INFINITY);
+    /// Adds the front to the numbers of a run that has ended, from the first slips of the blocks that this
+    /// rank holds: of all t* of a run with a transition, or of the event that crosses a slider driven at an
+    /// edge. All ranks must call this together.
+    pub(crate) fn add_front(
+        &self,
+        numbers: &mut Summary,
+        case: &Case,
+        first_slips: &[f64],
+        communicator: &dyn Communicator,
+    ) {
+        let during = match &self.optional.precursors {
+            None => numbers.transition.then_some(0.0..=f64::INFINITY),
+            Some(precursors) => precursors.crossing().map(|crossing| {
+                let until = crossing.after.map_or(f64::INFINITY, |(time_star, _)| time_star);
+                crossing.from_star..=until
+            }),
         };
-        let crossing = precursors.crossing()?;
-        let until = crossing.after.map_or(f64::INFINITY, |(time_star, _)| time_star);
-        Some(crossing.from_star..=until)
+        if let Some(during) = during {
+            add_front(numbers, case, first_slips, during, communicator);
+        }
     }
 
     /// Friction in the kinetic window as it follows from a peak, up to now.
@@ -146,7 +155,7 @@ impl SummaryObservers {
             transition,
             instants: instants
                 .iter()
-                .map(|found| InstantSummary::of(found, is_held))
+                .map(|found| InstantSummary::new(found, is_held))
                 .collect(),
             si: Some(si),
             v_star: case.groups.v_star,
@@ -186,7 +195,7 @@ impl SummaryObservers {
             // The front is found later, when the simulation has freed its memory.
             ..Summary::default()
         };
-        self.optional.tell(&mut summary);
+        self.optional.write_into(&mut summary);
         summary
     }
 }
@@ -220,7 +229,7 @@ fn topographies(case: &Case) -> Option<Vec<TopographySummary>> {
 fn si(case: &Case, static_star: f64, kinetic_star: Option<f64>, contact_stress_max: f64) -> SiSummary {
     let (scales, model) = (&case.scales, &case.model);
     let area = model.surface.n_facing() as f64 * scales.block_size * scales.contact_width;
-    let unit = FrictionUnit::of(scales, model);
+    let unit = FrictionUnit::new(scales, model);
     SiSummary {
         pressure_pa: scales.pressure,
         young_modulus_pa: scales.young_modulus,
@@ -235,38 +244,5 @@ fn si(case: &Case, static_star: f64, kinetic_star: Option<f64>, contact_stress_m
         displacement_unit_m: scales.displacement(),
         stress_unit_pa: scales.stress(),
         contact_stress_max_pa: contact_stress_max * scales.stress(),
-    }
-}
-
-impl Summary {
-    /// Adds the values of the front.
-    pub(crate) fn add_front(&mut self, front: &LatticeFront, springs: SpringStiffness, scales: &Scales) {
-        let nucleations = front.nucleations.iter().map(|nucleation| NucleationSummary {
-            x_m: nucleation.place[0] * scales.block_size,
-            y_m: nucleation.place[1] * scales.block_size,
-            time_star: nucleation.time_star,
-        });
-        self.nucleations = nucleations.collect();
-        self.nucleation_sites = Some(self.nucleations.len());
-        let first = self.nucleations.first();
-        self.nucleation_x_m = first.map(|nucleation| nucleation.x_m);
-        self.nucleation_y_m = first.map(|nucleation| nucleation.y_m);
-        let speeds = |unit: f64| {
-            let speed = |of: fn(Quantiles) -> f64| front.speed.map(|speed| of(speed) * unit);
-            [speed(|s| s.median), speed(|s| s.low), speed(|s| s.high)]
-        };
-        [
-            self.front_speed_c_s,
-            self.front_speed_low_c_s,
-            self.front_speed_high_c_s,
-        ] = speeds(1.0 / springs.shear_wave_speed());
-        [
-            self.front_speed_m_s,
-            self.front_speed_low_m_s,
-            self.front_speed_high_m_s,
-        ] = speeds(scales.block_size / scales.time());
-        self.front_share = front.share;
-        self.front_duration_star = front.duration_star;
-        self.front_duration_s = front.duration_star.map(|star| star * scales.time());
     }
 }

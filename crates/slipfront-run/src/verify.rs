@@ -23,7 +23,7 @@ pub const DESCRIPTION_MAX_BYTES: u64 = 256 << 20;
 
 /// Result of verifying a folder.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Verdict {
+pub struct FolderCheck {
     /// Content of the folder in words.
     pub what: String,
     /// Differences that are errors, a line each.
@@ -78,34 +78,34 @@ pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Resu
 /// Compares the files of a complete run with its manifest.
 ///
 /// # Errors
-/// When the folder has no manifest, or the system cannot determine what it holds. After a stop, the verdict
+/// When the folder has no manifest, or the system cannot determine what it holds. After a stop, the check
 /// is not complete.
-pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, VerifyError> {
-    let mut verdict = Verdict::default();
+pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<FolderCheck, VerifyError> {
+    let mut check = FolderCheck::default();
     let manifest = match run.manifest() {
         Ok(manifest) => manifest,
         Err(error @ ManifestError::Missing { .. }) => return Err(error.into()),
         // It is a run folder, but nothing else can be said about it.
         Err(error @ (ManifestError::Unreadable { .. } | ManifestError::Damaged { .. })) => {
-            verdict.differences.push(error.to_string());
-            return Ok(verdict);
+            check.differences.push(error.to_string());
+            return Ok(check);
         }
     };
-    verdict.what = format!(
+    check.what = format!(
         "{} unchanged since {} wrote them, finished {}",
         count(manifest.files.len(), "file"),
         manifest.program(),
         truncated(&manifest.finished)
     );
-    verdict.differences = differences(&manifest.files, &run.path, "were written", stop);
+    check.differences = differences(&manifest.files, &run.path, "were written", stop);
     // Another version may have written other keys; its results are still what it wrote.
     let (as_difference, as_note) = match unresolved(run) {
         unresolved if manifest.build == program::this_build() => (unresolved, None),
         unresolved => (None, unresolved),
     };
-    verdict.differences.extend(as_difference);
+    check.differences.extend(as_difference);
     let listed = manifest.files.iter().map(|file| file.name.as_str());
-    let has_unfinished = Unfinished::of(&run.path).is_managed()?;
+    let has_unfinished = Unfinished::in_folder(&run.path).is_managed()?;
     // An interrupted `slipfront plot` may have left a hidden file next to a picture.
     let is_left = |name: &str| match name {
         UNFINISHED => has_unfinished,
@@ -113,10 +113,10 @@ pub fn verify_run(run: &Inspection, stop: &AtomicBool) -> Result<Verdict, Verify
     };
     let (described, outdated) = description_in(&run.path, &manifest.checksum);
     let listed = listed.chain([MANIFEST]).chain(described).collect();
-    verdict.notes = unlisted_files(&run.path, &listed, is_left);
-    verdict.notes.extend(outdated);
-    verdict.notes.extend(as_note);
-    Ok(verdict)
+    check.notes = unlisted_files(&run.path, &listed, is_left);
+    check.notes.extend(outdated);
+    check.notes.extend(as_note);
+    Ok(check)
 }
 
 /// The name of the description of a folder for data repositories, if there is one that can be read. Also a
@@ -150,7 +150,7 @@ pub fn inspect(folder: &Path) -> Result<Inspection, VerifyError> {
             return Err(VerifyError::NotAFolder { path });
         }
     }
-    Ok(Inspection::of(folder)?)
+    Ok(Inspection::read(folder)?)
 }
 
 /// Differences between the files of a folder and the listed ones, a sentence for each; `how` is the end of
@@ -173,7 +173,7 @@ pub fn differences<'f>(
             Ok(found) if found.is_file() && found.len() != file.bytes => {
                 format!("differs: it has {} bytes where {} {how}", found.len(), file.bytes)
             }
-            Ok(_) => match ManifestFile::of_until(folder, &file.name, stop) {
+            Ok(_) => match ManifestFile::read_until(folder, &file.name, stop) {
                 Ok(found) if found == *file => return None,
                 Ok(_) => format!("differs: other bytes {how}"),
                 Err(error) => format!("cannot be read: {error}"),

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
+#[cfg(feature = "work")]
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 use slipfront_base::ordered::map_of;
@@ -15,6 +17,7 @@ use toml::{Table, Value};
 use crate::base64;
 use crate::names::{MAX_FILES, is_plain_name, plain_name};
 use crate::protocol::Source;
+use crate::sentence::sentence;
 
 /// Largest number of blocks of a case: the run, its twin and the pictures must fit into the memory of a small
 /// machine.
@@ -68,7 +71,7 @@ impl TryFrom<Source> for Document {
             let missing = || "it is not one of the files that came with the case".to_owned();
             files.get(name).cloned().ok_or_else(missing)
         };
-        Self::new(&name, &toml, read).map_err(|error| error.to_string())
+        Self::new(&name, &toml, read).map_err(sentence)
     }
 }
 
@@ -182,7 +185,7 @@ impl Document {
     /// A sentence, if the keys are not a case.
     pub(crate) fn twin(&self) -> Result<Self, String> {
         let mut twin = self.without_texture();
-        twin.drop_unnamed_files().map_err(|error| error.to_string())?;
+        twin.drop_unnamed_files().map_err(sentence)?;
         Ok(twin)
     }
 
@@ -263,11 +266,7 @@ impl Document {
     /// # Errors
     /// When the image of the mask cannot be written, or the case is invalid even without it.
     pub(crate) fn with_mask(&self, textured: &[bool], nx: usize) -> Result<Self, CaseError> {
-        if !textured.contains(&true) {
-            return Ok(self.without_texture());
-        }
-        let png = mask_png(textured, nx)?;
-        self.with_image(&png, slipfront_case::case_file::DEFAULT_THRESHOLD)
+        self.without_texture().with_layer(None, textured, nx)
     }
 
     /// Index of the texture that a brush paints on: the last image that is stretched over the slider
@@ -306,7 +305,8 @@ impl Document {
         if !textured.contains(&true) {
             return Ok(others);
         }
-        let png = mask_png(textured, nx)?;
+        let png = mask_image(textured, nx)
+            .map_err(|error| case_error(format!("the mask cannot be written: {error}")))?;
         others.and_image(index, &png, slipfront_case::case_file::DEFAULT_THRESHOLD)
     }
 
@@ -335,6 +335,16 @@ impl Document {
         self.build(&overrides, watch)
     }
 
+    /// Builds the case to show for a job, unless it is to stop.
+    ///
+    /// # Errors
+    /// A sentence, if the keys are not a case that can be run, or the work was stopped.
+    #[cfg(feature = "work")]
+    pub(crate) fn case_unless(&self, stop: &AtomicBool) -> Result<Case, String> {
+        self.case_to_show(&mut |_| !stop.load(Ordering::Relaxed))
+            .map_err(sentence)
+    }
+
     /// Builds the case with other values of keys, each as `key=value`.
     ///
     /// # Errors
@@ -356,7 +366,7 @@ impl Document {
             folder: Path::new(""),
             in_memory: Some(&in_memory),
         };
-        Case::to_run_with(file, &self.name, files, watch, Ranks::ALONE)
+        Case::to_run(file, &self.name, files, watch, Ranks::ALONE)
     }
 
     /// Refuses a file that does not belong to the case, wherever the file is: the keys may come from a
@@ -374,11 +384,6 @@ impl Document {
             None => Ok(()),
         }
     }
-}
-
-/// The image of a mask.
-fn mask_png(textured: &[bool], nx: usize) -> Result<Vec<u8>, CaseError> {
-    mask_image(textured, nx).map_err(|error| case_error(format!("the mask cannot be written: {error}")))
 }
 
 /// An image with one pixel per block, black for texture, with the largest y first.

@@ -8,7 +8,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::protocol::{CalibratingReply, Estimate};
+use crate::protocol::{CalibratingReply, FoundReply};
 
 /// Static friction mu_s* with one seed: with the texture and, if there is one, without it; none for a run
 /// without a transition.
@@ -18,7 +18,7 @@ pub(crate) type Frictions = Vec<Option<f64>>;
 /// stop.
 pub trait Worker {
     /// Passes an event of the job on to the session.
-    fn tell(&self, event: Event);
+    fn send(&self, event: Event);
 
     /// Whether the job is to stop, because nobody receives its events any more.
     fn stop(&self) -> &AtomicBool;
@@ -43,17 +43,18 @@ pub(crate) enum EventKind {
     /// Static friction with the next seed, or why it cannot be found.
     Repeated(Result<Frictions, String>),
     /// Progress of a search.
-    Tried(Tried),
+    Tried(SearchUpdate),
     /// The best texture of a search, or why there is none.
     Searched(Result<Mask, String>),
-    /// The comparison of the best texture of a search with the painted one, or why they cannot be compared.
-    Compared(Result<Comparison, String>),
+    /// The comparison of the best texture of a search with the painted one, without the number of textures
+    /// that were tried, or why they cannot be compared.
+    Compared(Result<FoundReply, String>),
     /// A reply to the page, as JSON, with which the work ends.
     Replied(String),
     /// Progress of a calibration.
     Calibrating(CalibratingReply),
-    /// Runs that a calibration needs before it can continue.
-    Wants(Vec<WantedRun>),
+    /// Runs that a calibration needs before it can continue, each as JSON that only the calibration reads.
+    Wants(Vec<String>),
     /// The curves of the next run that a calibration wanted, as JSON, or why they cannot be computed.
     Made(Result<String, String>),
     /// The results of a calibration in the form for the page, or why there are none.
@@ -62,14 +63,10 @@ pub(crate) enum EventKind {
     Lost,
 }
 
-/// A run that a calibration wants, as JSON that only the calibration reads.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct WantedRun(pub(crate) String);
-
-/// A run that a calibration wanted, with its curves as JSON.
+/// A run that a calibration wanted, and its curves, each as JSON that only the calibration reads.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct MadeRun {
-    pub(crate) wanted: WantedRun,
+    pub(crate) wanted: String,
     pub(crate) curves: String,
 }
 
@@ -101,27 +98,11 @@ impl From<Mask> for String {
 
 /// Progress of a search.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Tried {
+pub(crate) struct SearchUpdate {
     /// Number of textures tried.
     pub(crate) textures: usize,
     /// Change of static friction by the best texture tried, relative to the slider without texture, %.
     pub(crate) best_percent: Option<f64>,
     /// Textured blocks of the best texture tried.
     pub(crate) best_texture: Option<Mask>,
-}
-
-/// Comparison of the best texture of a search with the painted one, on surfaces that the search has not seen.
-#[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct Comparison {
-    /// Number of surfaces on which the textures are compared.
-    pub(crate) surfaces: usize,
-    /// Change of static friction by the best texture of the search, relative to the slider without texture,
-    /// %.
-    pub(crate) best: Option<Estimate>,
-    /// Change of static friction by the painted texture, relative to the slider without texture, %; none if
-    /// nothing is painted.
-    pub(crate) painted: Option<Estimate>,
-    /// Whether the best texture of the search is better than the painted one by more than the scatter over
-    /// surfaces.
-    pub(crate) is_better: bool,
 }

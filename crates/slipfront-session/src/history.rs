@@ -97,8 +97,8 @@ mod tests {
     use super::*;
 
     /// Number of these files that are still in memory.
-    fn count_of_kept(of: &[Weak<[u8]>]) -> usize {
-        of.iter().filter(|file| file.strong_count() > 0).count()
+    fn count_of_kept(versions: &[Weak<[u8]>]) -> usize {
+        versions.iter().filter(|file| file.strong_count() > 0).count()
     }
 
     #[test]

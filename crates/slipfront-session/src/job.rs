@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::controls::TwoValues;
 use crate::document::Document;
-use crate::event::{MadeRun, Mask, WantedRun};
+use crate::event::{MadeRun, Mask};
 use crate::protocol::{CalibrateRequest, DrawingFormat, RecordFile};
 
 /// A computation outside a session. It reports its results as events, and can be sent as JSON.
@@ -34,10 +34,10 @@ pub(crate) enum JobKind {
         /// Whether other jobs make the runs, instead of the threads of this one.
         is_elsewhere: bool,
     },
-    /// Makes runs of a calibration.
+    /// Makes runs of a calibration, which it has listed as JSON.
     MakeRuns {
         request: Box<CalibrateRequest>,
-        wanted: Vec<WantedRun>,
+        wanted: Vec<String>,
     },
     /// Draws the texture.
     Draw(DrawingFormat),

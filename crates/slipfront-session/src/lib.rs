@@ -25,10 +25,10 @@ mod picture;
 mod presets;
 mod protocol;
 mod recorded;
-mod repeat;
 mod replies;
 mod run_files;
 mod search;
+mod sentence;
 mod session;
 mod shapes;
 #[cfg(test)]
@@ -48,6 +48,7 @@ pub use protocol::{MAX_MESSAGE, Message};
 pub use recorded::RecordedRun;
 pub use replies::{failed, hello, refused, saved, saving};
 pub use run_files::recorded_run;
+pub use sentence::sentence;
 pub use session::Session;
 #[cfg(feature = "work")]
 pub use work::run_archive;

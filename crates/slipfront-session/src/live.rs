@@ -8,6 +8,7 @@ use slipfront_run::running::Running;
 use slipfront_run::summary::Summary;
 
 use crate::protocol::PeakReply;
+use crate::sentence::sentence;
 
 /// A run from rest, with the legs begun by changes of its case.
 pub(crate) struct LiveRun {
@@ -15,7 +16,7 @@ pub(crate) struct LiveRun {
     /// Number of the present leg; 0 for the leg that begins at rest.
     pub(crate) leg: usize,
     /// Steps and time of the legs before the present one.
-    before: Elapsed,
+    pub(crate) before: Elapsed,
     /// Position of the drive at the start of the present leg, m, block by block; none for a leg from rest.
     origin: Option<Vec<[f32; 2]>>,
     /// Number of points of the present leg's curve that were sent to the page.
@@ -28,12 +29,12 @@ pub(crate) struct LiveRun {
 
 /// Steps and times that have passed.
 #[derive(Clone, Copy, Debug, Default)]
-struct Elapsed {
+pub(crate) struct Elapsed {
     steps: u64,
-    time_star: f64,
+    pub(crate) time_star: f64,
     /// t* of the drive, which stops while a held drive is held.
-    drive_time_star: f64,
-    time_s: f64,
+    pub(crate) drive_time_star: f64,
+    pub(crate) time_s: f64,
 }
 
 /// Points of a curve: t* of the drive, mu* and the share of sliding blocks.
@@ -67,7 +68,7 @@ impl LiveRun {
         let leg = self
             .running
             .change(case, self.running.threads())
-            .map_err(|error| error.to_string())?;
+            .map_err(sentence)?;
         let drive = leg.drive_m.x.iter().zip(&leg.drive_m.y);
         let mut origin: Vec<[f32; 2]> = drive.map(|(x, y)| [*x as f32, *y as f32]).collect();
         for (origin, before) in origin.iter_mut().zip(self.origin.iter().flatten()) {
@@ -117,7 +118,7 @@ impl LiveRun {
     /// A sentence, when the run diverges.
     pub(crate) fn advance(&mut self, steps: u64) -> Result<(), String> {
         if self.ended.is_none() {
-            self.ended = self.running.advance(steps).map_err(|error| error.to_string())?;
+            self.ended = self.running.advance(steps).map_err(sentence)?;
         }
         Ok(())
     }
@@ -150,21 +151,6 @@ impl LiveRun {
     /// Time since rest, s.
     pub(crate) fn time_s(&self) -> f64 {
         self.before.time_s + self.running.snapshot().time_star * self.case().scales.time()
-    }
-
-    /// Duration of the previous legs, s.
-    pub(crate) fn time_before_s(&self) -> f64 {
-        self.before.time_s
-    }
-
-    /// Duration of the previous legs, t*.
-    pub(crate) fn time_before_star(&self) -> f64 {
-        self.before.time_star
-    }
-
-    /// t* of the drive in the previous legs.
-    pub(crate) fn drive_time_before_star(&self) -> f64 {
-        self.before.drive_time_star
     }
 
     /// Returns the points of the curve that were not sent to the page yet, and marks them as sent.

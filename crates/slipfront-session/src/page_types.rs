@@ -10,6 +10,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use slipfront_case::case_file::{Key, KeyKind, SECTIONS};
+use slipfront_run::measured::{Measure, TableColumn};
 use slipfront_run::summary::{Summary, summary_json};
 
 use crate::controls::{CONTROLS, ControlValue};
@@ -18,9 +19,8 @@ use crate::picture::DisplayedField;
 use crate::protocol::{
     CalibratedReply, CalibratingReply, CalibrationOutcome, CalibrationResults, CalibrationStage, CaseReply,
     CurveReply, DrawingFormat, DrawingReply, Estimate, FindingReply, FoundOutcome, FoundReply, NumbersReply,
-    PeakReply, PresetEntry, ProbeReply, RecordAbscissa, RecordColumn, RecordCurve, RecordOrdinate,
-    RecordReply, RepeatedReply, Reply, Request, SavingEntry, SearchLimits, SensitivityReply, Units,
-    UnknownReply,
+    PeakReply, PresetEntry, ProbeReply, RecordCurve, RecordReply, RepeatedReply, Reply, Request, SavingEntry,
+    SearchLimits, SensitivityReply, Units, UnknownReply,
 };
 use crate::shapes;
 
@@ -397,10 +397,10 @@ fn each_reply(check: &mut impl FnMut(&Reply)) {
 /// Calls `check` with the replies about records, calibrations, sensitivities and drawings.
 fn records_and_calibrations(check: &mut impl FnMut(&Reply)) {
     for (along, of) in [
-        (RecordAbscissa::Time, RecordOrdinate::Force),
-        (RecordAbscissa::Displacement, RecordOrdinate::Coefficient),
+        (Measure::Time, Measure::Force),
+        (Measure::Displacement, Measure::Coefficient),
     ] {
-        let is_read = along == RecordAbscissa::Time;
+        let is_read = along == Measure::Time;
         let curve = RecordCurve {
             columns: [0, 1],
             along,
@@ -413,7 +413,7 @@ fn records_and_calibrations(check: &mut impl FnMut(&Reply)) {
         for (curve, problem) in [(Some(curve), None), (None, Some("no unit".to_owned()))] {
             check(&Reply::Record(RecordReply {
                 name: "rig.csv".to_owned(),
-                columns: vec![RecordColumn {
+                columns: vec![TableColumn {
                     name: "t".to_owned(),
                     unit: is_read.then(|| "s".to_owned()),
                 }],

@@ -247,12 +247,12 @@ fn round_up(value: f32) -> f32 {
 /// The share of sliding blocks over place and time, as a picture; `before_star` is the duration t* of the
 /// previous legs.
 pub(crate) fn kymograph(
-    of: &Kymograph,
+    kymograph: &Kymograph,
     bins: &PositionBins,
     dt_star: f64,
     before_star: f64,
 ) -> Option<Vec<u8>> {
-    let rows: Vec<(f64, Vec<f32>)> = of.rows().collect();
+    let rows: Vec<(f64, Vec<f32>)> = kymograph.rows().collect();
     let (first, last) = (rows.first()?.0, rows.last()?.0);
     let mut bytes = vec![KYMOGRAPH, 0, 0, 0];
     bytes.extend((rows.len() as u32).to_le_bytes());

@@ -8,6 +8,7 @@ use slipfront_base::text::truncated;
 use crate::base64;
 use crate::document::Document;
 use crate::protocol::PresetEntry;
+use crate::sentence::sentence;
 
 /// A case to choose from.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -47,7 +48,7 @@ impl Presets {
         };
         // The case gets the last part of a name in a group, such as `paper/fig03`.
         let plain = name.rsplit('/').next().unwrap_or(name);
-        Document::new(plain, &preset.toml, read).map_err(|error| error.to_string())
+        Document::new(plain, &preset.toml, read).map_err(sentence)
     }
 
     /// The list that the page shows.

@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+#[cfg(feature = "work")]
+use slipfront_run::measured::{Measure, TableColumn};
 use slipfront_study::Sample;
 
 use crate::controls::{Control, ControlValue};
@@ -446,7 +448,7 @@ pub(crate) struct FindingReply {
 }
 
 /// The result of a search for a better texture.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct FoundReply {
     pub(crate) outcome: FoundOutcome,
     /// Textures that were tried.
@@ -460,7 +462,7 @@ pub(crate) struct FoundReply {
 }
 
 /// Fate of the painted texture after a search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum FoundOutcome {
     /// The best texture of the search has replaced the painted one.
@@ -478,7 +480,7 @@ pub(crate) enum FoundOutcome {
 #[derive(Debug, Serialize)]
 pub(crate) struct RecordReply {
     pub(crate) name: String,
-    pub(crate) columns: Vec<RecordColumn>,
+    pub(crate) columns: Vec<TableColumn>,
     /// The record; none if the table could not be read with these columns.
     pub(crate) curve: Option<RecordCurve>,
     /// Why there is no curve, which other columns or units may mend.
@@ -487,46 +489,22 @@ pub(crate) struct RecordReply {
     pub(crate) notes: Vec<String>,
 }
 
-/// A column of a table.
-#[cfg(feature = "work")]
-#[derive(Debug, Serialize)]
-pub(crate) struct RecordColumn {
-    pub(crate) name: String,
-    pub(crate) unit: Option<String>,
-}
-
 /// Two columns of a table, in SI units.
 #[cfg(feature = "work")]
 #[derive(Debug, Serialize)]
 pub(crate) struct RecordCurve {
     /// Places of the columns in the table, from 0.
     pub(crate) columns: [usize; 2],
-    pub(crate) along: RecordAbscissa,
-    pub(crate) of: RecordOrdinate,
+    /// Quantity of the abscissae: time or displacement.
+    pub(crate) along: Measure,
+    /// Quantity of the ordinates: force or friction coefficient.
+    pub(crate) of: Measure,
     /// Number of values of the record; longer ones are thinned out below.
     pub(crate) values: usize,
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
     /// Noise by the scatter of values about their neighbours, % of the mean friction.
     pub(crate) noise_percent: f64,
-}
-
-/// Quantity of the abscissae of a record.
-#[cfg(feature = "work")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum RecordAbscissa {
-    Time,
-    Displacement,
-}
-
-/// Quantity of the ordinates of a record.
-#[cfg(feature = "work")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum RecordOrdinate {
-    Force,
-    Coefficient,
 }
 
 /// How far a calibration is.
@@ -629,8 +607,8 @@ pub(crate) struct Estimate {
 
 impl Estimate {
     /// The mean of values, with half the width of its 95 % confidence interval; none without values.
-    pub(crate) fn of(values: &[f64]) -> Option<Self> {
-        let sample = Sample::of(values, CONFIDENCE)?;
+    pub(crate) fn from_values(values: &[f64]) -> Option<Self> {
+        let sample = Sample::from_values(values, CONFIDENCE)?;
         Some(Self {
             mean: sample.mean,
             half_width: sample.half_width,

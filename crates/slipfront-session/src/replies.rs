@@ -42,8 +42,12 @@ pub fn saved(name: &str, folder: &str, folders: &[String]) -> String {
 }
 
 /// The reply that a request of this name was refused, with the reason.
-pub fn refused(of: &'static str, sentence: String) -> String {
-    Reply::Refused { of, sentence }.json()
+pub fn refused(request: &'static str, sentence: String) -> String {
+    Reply::Refused {
+        of: request,
+        sentence,
+    }
+    .json()
 }
 
 /// The reply that the run has failed, with the reason.

@@ -13,11 +13,7 @@ use slipfront_run::summary::contact_stress_max_of;
 use crate::document::Document;
 use crate::host::OpenedCase;
 use crate::recorded::RecordedRun;
-
-/// Converts any error to its message.
-fn sentence(error: impl std::fmt::Display) -> String {
-    error.to_string()
-}
+use crate::sentence::sentence;
 
 /// Reads a complete run and gives it a name: its case with the files that the case names, its curve, and its
 /// snapshots if the fields are present. `read` returns the contents of a file of the run's folder, or none if

@@ -120,7 +120,7 @@ struct TestWorker {
 }
 
 impl Worker for TestWorker {
-    fn tell(&self, event: Event) {
+    fn send(&self, event: Event) {
         self.events.borrow_mut().push_back(event);
     }
 
@@ -135,13 +135,13 @@ impl Worker for TestWorker {
 }
 
 /// A session of a test, and the time on its clock.
-pub(crate) struct Tried {
+pub(crate) struct TestSession {
     pub(crate) session: Session,
     pub(crate) host: Rc<TestHost>,
     pub(crate) now: Duration,
 }
 
-impl Tried {
+impl TestSession {
     /// A session without an open case.
     pub(crate) fn new() -> Self {
         let host = Rc::new(TestHost::default());
@@ -154,10 +154,10 @@ impl Tried {
 
     /// A session with a paused case.
     pub(crate) fn with(case: &str) -> Self {
-        let mut tried = Self::new();
-        tried.ask(serde_json::json!({ "do": "view", "paused": true }));
-        tried.ask(serde_json::json!({ "do": "open", "source": { "toml": case } }));
-        tried
+        let mut test = Self::new();
+        test.ask(serde_json::json!({ "do": "view", "paused": true }));
+        test.ask(serde_json::json!({ "do": "open", "source": { "toml": case } }));
+        test
     }
 
     /// Passes a request to the session, and calls it once.

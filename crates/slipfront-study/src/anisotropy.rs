@@ -234,14 +234,14 @@ fn over_directions(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Res
     if values.len() < MIN_REPLICATES {
         return Err(too_few());
     }
-    let sample = |values: Vec<f64>| Sample::of(&values, confidence).ok_or_else(too_few);
+    let sample = |values: Vec<f64>| Sample::from_values(&values, confidence).ok_or_else(too_few);
     let [largest, smallest] = extremes(&sums(values));
-    let tensor = Tensor::of(degrees, values, confidence);
+    let tensor = Tensor::fit(degrees, values, confidence);
     Ok(OverDirections {
         mean: sample(values.iter().map(|values| mean(values)).collect())?,
         largest_direction: degrees[largest],
         smallest_direction: degrees[smallest],
-        anisotropy: sample(by_those_before(values, |before, values| {
+        anisotropy: sample(from_earlier_replicates(values, |before, values| {
             let [largest, smallest] = extremes(before);
             (values[largest] - values[smallest]) / mean(values)
         }))?,
@@ -262,24 +262,24 @@ fn largest_in_size(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Opt
         (at, 1f64.copysign(sums[at]))
     };
     let (at, sign) = largest(&sums(values));
-    let sizes = by_those_before(values, |before, values| {
+    let sizes = from_earlier_replicates(values, |before, values| {
         let (at, sign_before) = largest(before);
         sign * sign_before * values[at]
     });
-    Some((degrees[at], Sample::of(&sizes, confidence)?))
+    Some((degrees[at], Sample::from_values(&sizes, confidence)?))
 }
 
-/// Applies `of` to the sums over the earlier replicates and the values of a replicate, for every replicate
-/// after the first. A direction that is chosen from earlier replicates does not depend on the scatter of the
-/// replicate itself, as one chosen from all would, and no number depends on the choice for an earlier one.
-/// The confidence interval of the numbers therefore has the stated coverage.
-fn by_those_before(values: &[Vec<f64>], of: impl Fn(&[f64], &[f64]) -> f64) -> Vec<f64> {
+/// Applies `measure` to the sums over the earlier replicates and the values of a replicate, for every
+/// replicate after the first. A direction that is chosen from earlier replicates does not depend on the
+/// scatter of the replicate itself, as one chosen from all would, and no number depends on the choice for an
+/// earlier one. The confidence interval of the numbers therefore has the stated coverage.
+fn from_earlier_replicates(values: &[Vec<f64>], measure: impl Fn(&[f64], &[f64]) -> f64) -> Vec<f64> {
     let Some((first, later)) = values.split_first() else {
         return Vec::new();
     };
     let mut sums = first.clone();
     let number = |values: &Vec<f64>| {
-        let number = of(&sums, values);
+        let number = measure(&sums, values);
         add(&mut sums, values);
         number
     };
@@ -455,7 +455,7 @@ mod tests {
         let plan = Plan::new(&file, None).unwrap();
         let result = |run: RunKey| match (run.point, run.replicate) {
             (2, _) => Err("it failed".to_owned()),
-            (point, replicate) => Ok(Arc::new(SummaryValues::of(&Summary {
+            (point, replicate) => Ok(Arc::new(SummaryValues::from_summary(&Summary {
                 static_friction_star: 0.5 + 0.1 * point as f64 + 0.01 * replicate as f64,
                 // 60 degrees never slides in replicate 1, 90 degrees only in replicate 3.
                 transition: (point, replicate) != (1, 1) && (point != 3 || replicate == 3),
@@ -495,7 +495,7 @@ mod tests {
     #[test]
     fn a_difference_is_between_directions_that_others_chose() {
         let values = [vec![0.9, 0.8, 0.7], vec![0.6, 0.8, 1.0], vec![0.7, 1.0, 0.7]];
-        let numbers = by_those_before(&values, |before, values| {
+        let numbers = from_earlier_replicates(&values, |before, values| {
             let [largest, smallest] = extremes(before);
             values[largest] - values[smallest]
         });

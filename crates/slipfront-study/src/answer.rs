@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::meshed::MeshedCoverage;
+use crate::meshed_coverage::MeshedCoverage;
 use crate::plan::Plan;
 use crate::study_results::StudyResults;
 use crate::tables::quantities;
@@ -46,7 +46,7 @@ fn point(plan: &Plan, results: &StudyResults, position: usize) -> Value {
             results.points[position].replicates.into(),
         ),
     ]);
-    if MeshedCoverage::of(plan).is_some() {
+    if MeshedCoverage::from_plan(plan).is_some() {
         value.insert(
             "texture_percent".to_owned(),
             plan.texture_percent(position).into(),
@@ -56,7 +56,7 @@ fn point(plan: &Plan, results: &StudyResults, position: usize) -> Value {
         let Some(sample) = results.sample(plan, position, name) else {
             continue;
         };
-        let [low, high] = sample.interval().map_or([None; 2], |ends| ends.map(Some));
+        let [low, high] = sample.ends();
         let statistics = json!({
             "n": sample.n,
             "mean": sample.mean,

@@ -356,28 +356,25 @@ fn with_prefix(first: &WrittenQuantity, values: &[Value]) -> Option<Value> {
     Some(one)
 }
 
-/// The quantity of a level, if its value has a unit; for a pair of equal quantities, one of them.
-fn quantity(value: &Value) -> Option<WrittenQuantity<'_>> {
-    match value {
-        Value::String(text) => WrittenQuantity::read(text),
-        Value::Array(pair) => match pair.as_slice() {
-            [one, other] if one == other => quantity(one),
-            _ => None,
-        },
-        _ => None,
+/// The value of a level, or one value of a pair of equal ones, such as the blocks along the sides of a
+/// square.
+fn one_of_pair(value: &Value) -> &Value {
+    match value.as_array().map(Vec::as_slice) {
+        Some([one, other]) if one == other => one_of_pair(one),
+        _ => value,
     }
 }
 
-/// The number of a level. A pair of equal numbers, such as the blocks along the sides of a square, counts as
-/// one number.
+/// The quantity of a level, if its value has a unit; for a pair of equal quantities, one of them.
+fn quantity(value: &Value) -> Option<WrittenQuantity<'_>> {
+    WrittenQuantity::read(one_of_pair(value).as_str()?)
+}
+
+/// The number of a level. A pair of equal numbers counts as one number.
 fn number(value: &Value) -> Option<f64> {
-    match value {
+    match one_of_pair(value) {
         Value::Integer(number) => Some(*number as f64),
         Value::Float(number) => Some(*number),
-        Value::Array(pair) => match pair.as_slice() {
-            [one, other] if one == other => number(one),
-            _ => None,
-        },
         _ => None,
     }
 }

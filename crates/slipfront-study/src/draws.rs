@@ -10,11 +10,11 @@ pub struct Draws(ChaCha8Rng);
 impl Draws {
     /// The stream of a seed.
     pub fn new(start: u64) -> Self {
-        Self::of([start, 0, 0, 0])
+        Self::named([start, 0, 0, 0])
     }
 
     /// The stream that four numbers identify.
-    pub fn of(name: [u64; 4]) -> Self {
+    pub fn named(name: [u64; 4]) -> Self {
         let mut key = [0; 32];
         for (bytes, number) in key.chunks_exact_mut(8).zip(name) {
             bytes.copy_from_slice(&number.to_le_bytes());

@@ -12,10 +12,12 @@ use slipfront_base::text::{display_path, single_line};
 use slipfront_case::case_file::CaseError;
 use slipfront_case::texture_file::TextureFileError;
 use slipfront_plot::PictureError;
+use slipfront_run::export::ExportError;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::instrument::InstrumentError;
 use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::program;
+use slipfront_run::verify::VerifyError;
 
 /// A study that cannot be used, or had to stop.
 #[derive(Debug, Error)]
@@ -78,6 +80,28 @@ pub enum StudyError {
     },
     #[error(transparent)]
     Folder(#[from] FolderError),
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    #[error(
+        "the study in {path} lacks {}{}: finish it first, or merge it with its other shards",
+        count(*runs, "run"),
+        of_others(*others)
+    )]
+    LacksRuns {
+        path: PathBuf,
+        runs: usize,
+        others: usize,
+    },
+    #[error("the {what} in {path} is not finished: run it again to resume it first")]
+    Unfinished { what: &'static str, path: PathBuf },
+    #[error("the {what} in {path} is not finished: run it again to resume it, and then export it")]
+    UnfinishedExport { what: &'static str, path: PathBuf },
+    #[error(
+        "{path} contains figures of `slipfront paper`, which can be computed again: give folders of runs or studies"
+    )]
+    ExportOfFigures { path: PathBuf },
     #[error("the folder {path} is not the folder of a {what}: choose another with --out")]
     OtherThings { what: &'static str, path: PathBuf },
     #[error(
@@ -243,25 +267,35 @@ impl StudyError {
     }
 }
 
-/// Reason why the model has no curves at some values of the unknowns.
+/// The model has no curves at some values of the unknowns.
+#[derive(Debug, Error)]
+#[error("the unknowns {point}: {reason}")]
+pub struct TrainingError {
+    /// The values of the unknowns.
+    pub point: String,
+    /// Reason why there are no curves.
+    pub reason: Box<NoCurve>,
+}
+
+/// Reason why the model has no curve.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
-pub enum TrainingError {
-    #[error("the unknowns {point}: {source}")]
-    Case { point: String, source: Box<CaseError> },
-    #[error("the unknowns {point}: {source}")]
-    Instrument { point: String, source: InstrumentError },
-    #[error("the unknowns {point}: {source}; narrow the ranges")]
-    Run { point: String, source: RunError },
+pub enum NoCurve {
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    #[error(transparent)]
+    Instrument(#[from] InstrumentError),
+    #[error("{0}; narrow the ranges")]
+    Run(#[from] RunError),
     #[error(
-        "the unknowns {point}: the run ends before record {record}, or its friction is not a force along the drive: set \
-         `time.duration` to the duration of the record"
+        "the run ends before record {record}, or its friction is not a force along the drive: set `time.duration` to the \
+         duration of the record"
     )]
-    Short { point: String, record: usize },
+    Short { record: usize },
 }
 
 /// The explanation of recorded runs that do not belong to a study, to be inserted into a sentence.
-pub(crate) fn of_others(runs: usize) -> String {
+fn of_others(runs: usize) -> String {
     match runs {
         0 => String::new(),
         _ => format!(

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use jiff::SignedDuration;
 use slipfront_base::number_format::byte_size;
 use slipfront_case::case_file::CaseError;
-use slipfront_run::estimate_cost::{StepTime, TimeRange};
+use slipfront_run::estimate_cost::StepTime;
 
 use crate::error::StudyError;
 use crate::plan::Plan;
@@ -19,12 +19,13 @@ pub struct CostLimits {
     pub time: Option<SignedDuration>,
 }
 
-/// Time that the runs will take on `threads` threads of this machine, with the fewest replicates.
+/// Bounds of the time in s that the runs will take on `threads` threads of this machine, with the fewest
+/// replicates.
 ///
 /// # Errors
 /// When a file that a case reads has changed since the plan was made.
-pub fn estimated_time(plan: &Plan, threads: usize) -> Result<TimeRange, CaseError> {
-    let mut time = TimeRange::default();
+pub fn estimated_time(plan: &Plan, threads: usize) -> Result<[f64; 2], CaseError> {
+    let mut time = [0.0; 2];
     // The time per block depends on the size of the lattice: a small one fits into the cache.
     let mut per_step: HashMap<usize, StepTime> = HashMap::new();
     for run in plan.runs(1) {
@@ -32,15 +33,16 @@ pub fn estimated_time(plan: &Plan, threads: usize) -> Result<TimeRange, CaseErro
         let of_step = match per_step.get(&n_blocks) {
             Some(&of_step) => of_step,
             None => {
-                let of_step = StepTime::of(&plan.case(run, &mut |_| true)?);
+                let of_step = StepTime::measure(&plan.case(run, &mut |_| true)?);
                 per_step.insert(n_blocks, of_step);
                 of_step
             }
         };
-        time = time + of_step.of_steps(&steps);
+        let of_run = of_step.of_steps(&steps);
+        time = [time[0] + of_run[0], time[1] + of_run[1]];
     }
     let replicates = plan.settings.min_replicates() as f64;
-    Ok(time * (replicates / threads as f64))
+    Ok(time.map(|time| replicates / threads as f64 * time))
 }
 
 impl CostLimits {
@@ -64,7 +66,7 @@ impl CostLimits {
         }
         let Some(most) = self.time else { return Ok(()) };
         // Use the lower estimate: other work on the machine must not cause a refusal.
-        let TimeRange { least, .. } = estimated_time(plan, threads)?;
+        let [least, _] = estimated_time(plan, threads)?;
         if least > most.as_secs_f64() {
             let estimated = SignedDuration::from_secs(least.ceil() as i64);
             return Err(StudyError::TimeLimit { estimated, most });

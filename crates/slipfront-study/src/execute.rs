@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Sender};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use crate::error::StudyError;
 use crate::finished_run::{FinishedRun, Outcome, mark_of};
@@ -91,7 +91,11 @@ fn execute_with(
         };
         // The threads of the working pool, so that idle threads get replicates ahead of need.
         let threads = rayon::current_num_threads();
-        Scheduler::new(plan, records, &start, threads).run(&finished, stop, watch)
+        let finished = || {
+            let first = finished.recv_timeout(Duration::from_millis(100));
+            first.into_iter().chain(finished.try_iter()).collect()
+        };
+        Scheduler::new(plan, records, &start, threads).run(finished, stop, watch)
     })
 }
 
@@ -159,7 +163,7 @@ pub(crate) fn run_one(
         kept = mark_of(&path, record.is_ok());
     }
     let outcome = match record {
-        Ok(record) => Outcome::of(record.summary),
+        Ok(record) => Outcome::from_summary(record.summary),
         Err(error) => Outcome::Failed(error.to_string()),
     };
     Ok(Some((outcome, kept)))
@@ -183,7 +187,7 @@ fn write_folder(
 
 /// Sets a flag when it is dropped, also after an error or a panic: without a scheduler, the pool would run
 /// cases that nobody records.
-pub(crate) struct SetOnDrop<'a>(pub(crate) &'a AtomicBool);
+struct SetOnDrop<'a>(&'a AtomicBool);
 
 impl Drop for SetOnDrop<'_> {
     fn drop(&mut self) {

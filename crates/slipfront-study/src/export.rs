@@ -3,7 +3,7 @@
 
 use std::collections::HashSet;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use csv::StringRecord;
@@ -15,34 +15,13 @@ use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_run::names::{CASE, CONVERGENCE, RUNS, TABLES};
 use slipfront_run::run_copy::file_names;
-use thiserror::Error;
 
 use crate::error::StudyError;
-use crate::folder::is_of_figures;
-use crate::project_folder::{
-    CHECKSUMS, Checksums, Derivation, Journal, JournalEntry, ProjectKind, VerifyStudyError, verify_checksums,
-};
+use crate::project_folder::verify::verify_checksums;
+use crate::project_folder::{CHECKSUMS, Checksums, Journal, JournalEntry, Project, ProjectKind};
 use crate::study_file::STUDIES;
 use crate::summary_values::{AFTER_AXES, BEFORE_AXES};
-use crate::verify::verify_kept;
-
-/// Reason why a folder is not exported.
-#[derive(Debug, Error)]
-#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
-pub enum ExportFolderError {
-    #[error("the {what} in {path} is not finished: run it again to resume it, and then export it")]
-    Unfinished { what: &'static str, path: PathBuf },
-    #[error(
-        "{path} contains figures of `slipfront paper`, which can be computed again: give folders of runs or studies"
-    )]
-    Figures { path: PathBuf },
-    #[error(transparent)]
-    Folder(#[from] StudyError),
-    #[error(transparent)]
-    Kept(#[from] VerifyStudyError),
-    #[error(transparent)]
-    Results(#[from] ExportError),
-}
+use crate::verify::project_in;
 
 /// A line of the journal of any project.
 #[derive(Deserialize)]
@@ -59,58 +38,55 @@ impl JournalEntry for RecordedRun {
 ///
 /// # Errors
 /// When it is not such a folder, was not finished, cannot be read, or was changed after it was written.
-pub fn exported(folder: &Path, others: &[Derivation]) -> Result<Exported, ExportFolderError> {
-    if STUDIES.has_results_in(folder) {
-        return study(folder);
+pub fn exported(folder: &Path, others: &[Project]) -> Result<Exported, StudyError> {
+    match project_in(folder, others) {
+        Some(Project { find_again: None, .. }) => {
+            let path = folder.to_owned();
+            Err(StudyError::ExportOfFigures { path })
+        }
+        Some(of) if of.kind.name == STUDIES.name => study(folder, of),
+        Some(other) => project(folder, other, other.kind.name),
+        None => Ok(Exported::run(folder)?),
     }
-    if let Some(other) = others.iter().find(|other| other.kind.has_results_in(folder)) {
-        return project(folder, other.kind, other.kind.name);
-    }
-    if is_of_figures(folder) {
-        let path = folder.to_owned();
-        return Err(ExportFolderError::Figures { path });
-    }
-    Ok(Exported::run(folder)?)
 }
 
 /// A study with its runs. A study with a comparison of its meshes is a convergence.
-fn study(folder: &Path) -> Result<Exported, ExportFolderError> {
+fn study(folder: &Path, study_project: &Project) -> Result<Exported, StudyError> {
     let is_over_meshes = folder.join(CONVERGENCE[0]).exists();
     let kind = if is_over_meshes {
         "convergence"
     } else {
         STUDIES.name
     };
-    let mut study = project(folder, &STUDIES, kind)?;
+    let mut study = project(folder, study_project, kind)?;
     add_runs(&mut study)?;
     Ok(study)
 }
 
 /// The folder of a project, as in its list of files. The project is an action of this `kind`: its project
 /// file and the given files are the inputs, and all others are the results.
-fn project(folder: &Path, of: &ProjectKind, kind: &'static str) -> Result<Exported, ExportFolderError> {
-    let never = AtomicBool::new(false);
-    let (mut verdict, is_complete) = verify_checksums(folder, of, &[], &never)?;
-    if of.name == STUDIES.name {
-        verify_kept(folder, &mut verdict, &never)?;
-    }
-    ExportError::expect_none(verdict.differences)?;
+fn project(folder: &Path, project: &Project, kind: &'static str) -> Result<Exported, StudyError> {
+    let (never, project_kind) = (AtomicBool::new(false), project.kind);
+    let (mut check, is_complete) = verify_checksums(folder, project_kind, project.beside, &never)?;
+    project.verify_beside(folder, &mut check, &never)?;
+    ExportError::expect_none(check.differences)?;
     if !is_complete {
         let path = folder.to_owned();
-        return Err(ExportFolderError::Unfinished { what: kind, path });
+        return Err(StudyError::UnfinishedExport { what: kind, path });
     }
     let list = Checksums::read(folder)?.unwrap_or_default();
-    let (runs, _) = Journal::read::<RecordedRun>(folder, of.journal)?;
+    let (runs, _) = Journal::read::<RecordedRun>(folder, project_kind.journal)?;
     let runs: HashSet<String> = runs.into_iter().map(|run| run.id).collect();
     let runs = count(runs.len(), "recorded run");
     let mut files = list.files;
-    for name in [of.journal, CHECKSUMS] {
+    for name in [project_kind.journal, CHECKSUMS] {
         files.push(file_of(folder, name)?);
     }
     let name = folder_name(folder).unwrap_or_default();
     let names = || files.iter().map(|file| file.name.clone());
-    let (objects, results) = names().partition(|name| is_given(of, name));
-    let of_command = names().filter(|name| name == of.file || meaning_among(of.given, name).is_some());
+    let (objects, results) = names().partition(|name| is_given(project_kind, name));
+    let of_command =
+        names().filter(|name| name == project_kind.file || meaning_among(project_kind.given, name).is_some());
     let program = MadeBy {
         version: list.version,
         revision: list.revision,
@@ -119,8 +95,8 @@ fn project(folder: &Path, of: &ProjectKind, kind: &'static str) -> Result<Export
     let action = Action {
         id: format!("{kind}-{}", list.seal),
         name: format!("The {kind} {name}"),
-        command: Some((format!("slipfront {}", of.table), of_command.collect())),
-        description: format!("{} has a line for each of {runs}", of.journal),
+        command: Some((format!("slipfront {}", project_kind.table), of_command.collect())),
+        description: format!("{} has a line for each of {runs}", project_kind.journal),
         failure: None,
         seal: Some(list.seal.clone()),
         program: program.clone(),
@@ -130,7 +106,7 @@ fn project(folder: &Path, of: &ProjectKind, kind: &'static str) -> Result<Export
         results,
     };
     let files = files.into_iter().map(|file| ExportedFile {
-        meaning: meaning(of, &file.name),
+        meaning: meaning(project_kind, &file.name),
         file,
     });
     Ok(Exported {
@@ -139,7 +115,7 @@ fn project(folder: &Path, of: &ProjectKind, kind: &'static str) -> Result<Export
         kind,
         what: Some(format!("{kind} from {runs}")),
         program,
-        file: of.file,
+        file: project_kind.file,
         list: CHECKSUMS,
         seal: list.seal,
         finished: String::new(),
@@ -151,23 +127,23 @@ fn project(folder: &Path, of: &ProjectKind, kind: &'static str) -> Result<Export
 /// A file of a folder as it is now.
 fn file_of(folder: &Path, name: &str) -> Result<ManifestFile, StudyError> {
     let path = folder.join(name);
-    Ok(ManifestFile::of(folder, name).map_err(FolderError::read(&path))?)
+    Ok(ManifestFile::read(folder, name).map_err(FolderError::read(&path))?)
 }
 
 /// Whether a file is an input of a project.
-fn is_given(of: &ProjectKind, name: &str) -> bool {
-    name == of.file || name.starts_with("inputs/") || meaning_among(of.given, name).is_some()
+fn is_given(kind: &ProjectKind, name: &str) -> bool {
+    name == kind.file || name.starts_with("inputs/") || meaning_among(kind.given, name).is_some()
 }
 
 /// Content of a file of a project.
-fn meaning(of: &ProjectKind, name: &str) -> String {
-    if name == of.file {
-        return format!("The {} file, with its base case in it", of.name);
+fn meaning(kind: &ProjectKind, name: &str) -> String {
+    if name == kind.file {
+        return format!("The {} file, with its base case in it", kind.name);
     }
-    let known = meaning_among(of.given, name).or_else(|| meaning_among(of.found, name));
+    let known = meaning_among(kind.given, name).or_else(|| meaning_among(kind.found, name));
     let meaning = match known {
         Some(meaning) => meaning,
-        None if name == of.journal => "A line for every run that has ended",
+        None if name == kind.journal => "A line for every run that has ended",
         None if name == CHECKSUMS => {
             "Length and BLAKE3 checksum of every other file, and the program that wrote them"
         }
@@ -185,14 +161,12 @@ fn meaning_among(known: &[(&str, &'static str)], name: &str) -> Option<&'static 
 
 /// Adds the runs in the table of a study: runs with a kept folder together with their files, the others only
 /// as rows of the table.
-fn add_runs(study: &mut Exported) -> Result<(), ExportFolderError> {
+fn add_runs(study: &mut Exported) -> Result<(), StudyError> {
     let path = study.folder.join(TABLES[0]);
     let unreadable = FolderError::read(&path);
-    let table = open_regular(&path)
-        .map_err(&unreadable)
-        .map_err(StudyError::from)?;
+    let table = open_regular(&path).map_err(&unreadable)?;
     let mut table = csv::Reader::from_reader(table);
-    let damaged = |error: csv::Error| StudyError::from(unreadable(error.into()));
+    let damaged = |error: csv::Error| unreadable(error.into());
     let columns = table.headers().map_err(damaged)?.clone();
     let Some(end) = columns.iter().position(|column| column == AFTER_AXES[0]) else {
         return Ok(());
@@ -260,7 +234,7 @@ impl TableRow<'_> {
 }
 
 /// Adds a run of a study.
-fn add_run(study: &mut Exported, row: &TableRow) -> Result<(), ExportFolderError> {
+fn add_run(study: &mut Exported, row: &TableRow) -> Result<(), StudyError> {
     let name = row.name(study);
     let at = format!("{RUNS}/{}", row.run());
     let kept = study.folder.join(&at);
@@ -298,7 +272,9 @@ fn add_run(study: &mut Exported, row: &TableRow) -> Result<(), ExportFolderError
         program: whole.program.clone(),
         times: Default::default(),
         objects,
-        parameters: keys.map(|(key, level)| Parameter::of(key, level)).collect(),
+        parameters: keys
+            .map(|(key, level)| Parameter::from_toml(key, level))
+            .collect(),
         results: vec![TABLES[0].to_owned(), STUDIES.journal.to_owned()],
     };
     study.actions.push(action);

@@ -28,14 +28,14 @@ pub type RunResult = Result<Arc<SummaryValues>, String>;
 
 impl Outcome {
     /// The outcome of a run with these numbers.
-    pub fn of(summary: Summary) -> Self {
+    pub fn from_summary(summary: Summary) -> Self {
         Self::Done(Box::new(summary)).or_not_finite()
     }
 
     /// The part of the outcome that tables and statistics need.
     pub(crate) fn result(&self) -> RunResult {
         match self {
-            Self::Done(summary) => Ok(Arc::new(SummaryValues::of(summary))),
+            Self::Done(summary) => Ok(Arc::new(SummaryValues::from_summary(summary))),
             Self::Failed(reason) => Err(reason.clone()),
         }
     }
@@ -74,7 +74,7 @@ pub(crate) fn mark_of(folder: &Path, is_done: bool) -> Option<String> {
     let mut names = file_names(folder).ok()?;
     names.retain(|name| name == CASE || name.starts_with("inputs/"));
     names.sort();
-    let files = names.iter().map(|name| ManifestFile::of(folder, name));
+    let files = names.iter().map(|name| ManifestFile::read(folder, name));
     let files = files.collect::<std::io::Result<Vec<_>>>().ok()?;
     (names.iter().any(|name| name == CASE)).then(|| blake3::hash(&json(&files)).to_hex().to_string())
 }
@@ -94,7 +94,7 @@ mod tests {
                 energy_error: value,
                 ..Summary::default()
             };
-            Outcome::of(summary)
+            Outcome::from_summary(summary)
         };
         assert!(matches!(outcome(0.1), Outcome::Done(_)));
         assert!(matches!(outcome(f64::NAN), Outcome::Failed(_)));

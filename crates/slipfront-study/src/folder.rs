@@ -7,7 +7,7 @@ use crate::anisotropy::anisotropies;
 use crate::error::StudyError;
 use crate::finished_run::mark_of;
 use crate::plan::{Plan, RunKey};
-use crate::project_folder::{Batch, Checksums, Others, ProjectKind, ResultFiles};
+use crate::project_folder::{Batch, Checksums, Others, ProjectKind, ResultFiles, notes_of_use};
 use crate::run_journal::RunJournal;
 use crate::shard::Shard;
 use crate::study_file::{STUDIES, StudyFile};
@@ -15,7 +15,7 @@ use crate::study_results::StudyResults;
 use crate::{pictures, tables};
 use slipfront_base::disk::{TEXT_MAX_BYTES, open_limited, read_limited};
 use slipfront_base::machine::free_disk;
-use slipfront_base::number_format::{byte_size, count};
+use slipfront_base::number_format::byte_size;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::names::{FIGURE_CACHE, RUNS, TABLES};
 use slipfront_run::run_copy::copy_run;
@@ -54,7 +54,7 @@ impl StudyFolder {
         if is_of_figures(path) {
             return Err(STUDIES.other_things(path));
         }
-        let records = RunJournal::of(STUDIES.open_journal(path)?);
+        let records = RunJournal::from_opened(STUDIES.open_journal(path)?);
         let given = study.given()?;
         let parse = |text: &str| {
             let name = path.join(STUDY).display().to_string();
@@ -101,16 +101,12 @@ impl StudyFolder {
 
     /// Sentences about a folder that has been used before.
     pub fn notes(&self) -> Vec<String> {
-        let damaged = (self.records.damaged > 0).then(|| {
-            let lines = count(self.records.damaged, "damaged line");
-            format!("the journal has {lines}, which are ignored: their runs count as not run")
-        });
-        let changed =
-            "the study was changed after this folder was last used; runs that still belong to it are kept";
-        damaged
-            .into_iter()
-            .chain(self.changed.then(|| changed.to_owned()))
-            .collect()
+        let mut notes = notes_of_use(self.records.damaged, 0);
+        if self.changed {
+            let changed = "the study was changed after this folder was last used; runs that still belong to it are kept";
+            notes.push(changed.to_owned());
+        }
+        notes
     }
 
     /// Copies complete run folders, and the cases of failed runs, from the folders of shards if they are

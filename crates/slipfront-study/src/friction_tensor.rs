@@ -40,7 +40,7 @@ pub(crate) struct Tensor {
 impl Tensor {
     /// The tensor of the values of at least [`MIN_REPLICATES`] replicates, each in all directions; none if
     /// there are fewer than three directions within half a turn.
-    pub(crate) fn of(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Option<Self> {
+    pub(crate) fn fit(degrees: &[f64], values: &[Vec<f64>], confidence: f64) -> Option<Self> {
         let harmonics: Vec<[f64; 3]> = degrees
             .iter()
             .map(|degrees| {
@@ -100,7 +100,7 @@ fn principal(
     let [along_cosine, along_sine] = [cosine / amplitude, sine / amplitude];
     let part = |of: &dyn Fn([f64; 3]) -> f64| {
         let values: Vec<f64> = fits.iter().map(|fit| of(*fit)).collect();
-        Sample::of(&values, confidence)
+        Sample::from_values(&values, confidence)
     };
     let along = |[_, cosine, sine]: [f64; 3]| cosine * along_cosine + sine * along_sine;
     let turned = part(&|[_, cosine, sine]| sine * along_cosine - cosine * along_sine)?;
@@ -184,7 +184,7 @@ mod tests {
             (&[0.0, 60.0, 300.0], 90.0),
         ] {
             let values = vec![of_tensor(degrees, [0.9, 0.6], direction); 3];
-            let tensor = Tensor::of(degrees, &values, 0.95).unwrap();
+            let tensor = Tensor::fit(degrees, &values, 0.95).unwrap();
             let found = tensor.principal.unwrap();
             // The bounds allow for rounding of sums of a few numbers of order 1.
             assert!((found.direction - direction).abs() < 1e-10, "{found:?}");
@@ -201,23 +201,23 @@ mod tests {
     fn axes_that_are_not_known_are_not_told() {
         // Two directions and their opposites determine no axes, and two replicates are too few for the test.
         let two = [0.0, 90.0, 180.0, 270.0];
-        assert!(Tensor::of(&two, &vec![of_tensor(&two, [0.9, 0.6], 0.0); 3], 0.95).is_none());
-        assert!(Tensor::of(&EIGHTH, &vec![of_tensor(&EIGHTH, [0.9, 0.6], 0.0); 2], 0.95).is_none());
+        assert!(Tensor::fit(&two, &vec![of_tensor(&two, [0.9, 0.6], 0.0); 3], 0.95).is_none());
+        assert!(Tensor::fit(&EIGHTH, &vec![of_tensor(&EIGHTH, [0.9, 0.6], 0.0); 2], 0.95).is_none());
         // Equal friction in all directions, and friction with fourfold symmetry.
         let fourfold = EIGHTH.map(|degrees| 0.8 + 0.1 * libm::cos(4.0 * degrees.to_radians()));
         for values in [[0.8; 8], fourfold] {
-            let tensor = Tensor::of(&EIGHTH, &vec![values.to_vec(); 3], 0.95).unwrap();
+            let tensor = Tensor::fit(&EIGHTH, &vec![values.to_vec(); 3], 0.95).unwrap();
             assert!(tensor.principal.is_none() && tensor.p_value > 0.99, "{tensor:?}");
         }
         // Surfaces that differ by more than the principal values.
         let one = of_tensor(&EIGHTH, [0.9, 0.6], 0.0);
         let others = [80.0, 100.0].map(|direction| of_tensor(&EIGHTH, [0.9, 0.8], direction));
         let [two, three] = others;
-        let tensor = Tensor::of(&EIGHTH, &[one, two, three], 0.95).unwrap();
+        let tensor = Tensor::fit(&EIGHTH, &[one, two, three], 0.95).unwrap();
         assert!(tensor.principal.is_none(), "{tensor:?}");
         // A little scatter gives the direction a finite interval.
         let turned = [-1.0, 0.0, 1.0].map(|degrees| of_tensor(&EIGHTH, [0.9, 0.6], 20.0 + degrees));
-        let found = Tensor::of(&EIGHTH, &turned, 0.95).unwrap().principal.unwrap();
+        let found = Tensor::fit(&EIGHTH, &turned, 0.95).unwrap().principal.unwrap();
         assert!((found.direction - 20.0).abs() < 1e-10);
         // t(2, 97.5 %) = 4.3027 times sin(2 degrees)/sqrt(3), over the amplitude of the mean, (1 + 2 cos 2
         // degrees)/3.
@@ -258,7 +258,7 @@ mod tests {
             let alarms = (0..trials).filter(|&seed| {
                 let drawn = Coefficients::draw(8 * replicates, scatter, scatter, seed).mu_static;
                 let values: Vec<Vec<f64>> = drawn.chunks(8).map(<[f64]>::to_vec).collect();
-                let tensor = Tensor::of(&EIGHTH, &values, 0.95).unwrap();
+                let tensor = Tensor::fit(&EIGHTH, &values, 0.95).unwrap();
                 tensor.principal.is_some()
             });
             // 5 % of 2000 trials are 100 +- 9.7; the bound is five standard errors.

@@ -87,7 +87,6 @@ fn digest(case: &Case) -> blake3::Hash {
         number(value);
     }
     number(f64::from(u8::from(drive.rotation.is_some())));
-    number(model.springs().diagonal);
     if let Some(body) = model.body() {
         number(body.height);
         number(body.poisson);

@@ -1,21 +1,12 @@
 //! Titles of axes and legends for the keys of a case file and the quantities that are drawn.
 
 use crate::axis::{Axis, Spacing};
-use crate::meshed::MeshedCoverage;
+use crate::meshed_coverage::MeshedCoverage;
 use crate::plan::Plan;
 use crate::summary_values::REDUCTION;
 use slipfront_case::case_file::title_of;
 use slipfront_plot::QuantityLabel;
 use slipfront_run::summary::TITLES;
-
-/// Title of a quantity: words, symbol, unit; none if its name is used instead.
-fn title_of_quantity(name: &str) -> Option<[&'static str; 3]> {
-    if name == REDUCTION {
-        return Some(["reduction of \u{3bc}\u{209b}*", "", "%"]);
-    }
-    let (_, words, symbol) = TITLES.iter().find(|(titled, ..)| *titled == name)?;
-    Some([words, symbol, ""])
-}
 
 /// The title of a quantity; its name if it has none.
 pub fn title(quantity: &str) -> String {
@@ -24,7 +15,7 @@ pub fn title(quantity: &str) -> String {
 
 /// The symbol of a quantity; empty if it has none.
 pub(crate) fn quantity_symbol(quantity: &str) -> &'static str {
-    title_of_quantity(quantity).map_or("", |[_, symbol, _]| symbol)
+    label(quantity).map_or("", |label| label.symbol)
 }
 
 /// The title of an axis, with the unit of its numbers. The second and further textures are numbered. A key
@@ -63,7 +54,7 @@ pub struct AxisLabels {
 
 /// Labels of the axes of a study in pictures.
 pub fn axis_labels(plan: &Plan) -> Vec<AxisLabels> {
-    let meshed = MeshedCoverage::of(plan).map(|meshed| meshed.axis);
+    let meshed = MeshedCoverage::from_plan(plan).map(|meshed| meshed.axis);
     let labels = plan.axes.iter().enumerate().map(|(position, axis)| {
         let is_meshed = meshed == Some(position);
         let levels = axis.levels.iter();
@@ -116,20 +107,30 @@ fn printed(unit: &str) -> String {
     raised.replace('*', "\u{b7}")
 }
 
-fn label(key: &str) -> Option<QuantityLabel<'_>> {
-    let (words, symbol, unit, texture) = match title_of(key) {
-        Some((title, texture)) => (title.words, title.symbol, title.unit, texture),
-        None => {
-            let [words, symbol, unit] = title_of_quantity(key)?;
-            (words, symbol, unit, None)
-        }
-    };
-    let further = texture.filter(|&index| index > 0);
+/// The label of a key of a case file or of a quantity; none if its name is used instead.
+fn label(name: &str) -> Option<QuantityLabel<'static>> {
+    if let Some((title, texture)) = title_of(name) {
+        return Some(QuantityLabel {
+            words: title.words,
+            symbol: title.symbol,
+            unit: title.unit,
+            texture: texture
+                .filter(|&index| index > 0)
+                .map(|index| index.saturating_add(1)),
+        });
+    }
+    if name == REDUCTION {
+        return Some(QuantityLabel {
+            words: "reduction of \u{3bc}\u{209b}*",
+            unit: "%",
+            ..QuantityLabel::default()
+        });
+    }
+    let (_, words, symbol) = TITLES.iter().find(|(titled, ..)| *titled == name)?;
     Some(QuantityLabel {
         words,
         symbol,
-        unit,
-        texture: further.map(|index| index.saturating_add(1)),
+        ..QuantityLabel::default()
     })
 }
 

@@ -15,9 +15,9 @@ pub(crate) fn direction_axis(axes: &[Axis]) -> Option<usize> {
 pub(crate) type Levels = Vec<(usize, usize)>;
 
 /// Every combination of levels of these axes, the last fastest.
-pub(crate) fn combinations(axes: &[Axis], of: &[usize]) -> Vec<Levels> {
+pub(crate) fn combinations(axes: &[Axis], chosen: &[usize]) -> Vec<Levels> {
     let mut all = vec![Levels::new()];
-    for &axis in of {
+    for &axis in chosen {
         let levels = 0..axes[axis].levels.len();
         let with_each = |earlier: Levels| {
             let with = move |level| [earlier.as_slice(), &[(axis, level)]].concat();

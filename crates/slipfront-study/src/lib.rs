@@ -7,13 +7,11 @@
 //!
 //! Every finished run is a line of the journal, from which a stopped study continues.
 
-pub mod adaptation;
+pub mod adaptive_search;
 mod anisotropy;
 mod answer;
 pub mod axis;
 pub mod converge;
-#[cfg(not(target_family = "wasm"))]
-mod device_runs;
 pub mod draws;
 mod error;
 mod estimate_cost;
@@ -24,10 +22,13 @@ mod folder;
 mod friction_tensor;
 pub mod identity;
 mod idle_axes;
+mod kept_runs;
 mod labels;
 mod levels;
 pub mod measured_columns;
-mod meshed;
+mod meshed_coverage;
+#[cfg(not(target_family = "wasm"))]
+mod on_device;
 mod picture_plan;
 mod pictures;
 mod pictures_again;
@@ -54,19 +55,19 @@ mod write;
 pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
 pub use answer::answer;
 pub use axis::{Axis, AxisKeys, Level, Spacing};
-#[cfg(not(target_family = "wasm"))]
-pub use device_runs::execute_on_device;
-pub use error::{StudyError, TrainingError};
+pub use error::{NoCurve, StudyError, TrainingError};
 pub use estimate_cost::{CostLimits, estimated_time};
 pub use execute::{LookAtRun, collect, execute, execute_and_look};
-pub use export::{ExportFolderError, exported};
+pub use export::exported;
 pub use finished_run::{FinishedRun, Outcome, RunResult};
 pub use folder::{PAPER, StudyFolder, is_of_figures, is_study, refuse_foreign, study_of};
 pub use friction_tensor::Principal;
 pub use identity::SOURCE_HASH;
 pub use idle_axes::idle_axes;
 pub use labels::{AxisLabels, axis_labels, title};
-pub use meshed::MeshedCoverage;
+pub use meshed_coverage::MeshedCoverage;
+#[cfg(not(target_family = "wasm"))]
+pub use on_device::execute_on_device;
 pub use picture_plan::{quantities_without_pictures, why_no_pictures};
 pub use pictures_again::{PicturesOf, pictures_of};
 pub use plan::{Plan, Point, Role, RunKey};

@@ -93,10 +93,7 @@ pub fn why_no_pictures(axes: &[Axis]) -> Vec<String> {
 }
 
 fn why_no_curves(axes: &[Axis]) -> Option<String> {
-    let drawing = ChartKind::of(axes);
-    let ChartKind::Nothing(why) = drawing else {
-        return None;
-    };
+    let why = planned_charts(axes, QUANTITIES[0]).err()?;
     let values = match map_of(axes) {
         Some(_) => "the map shows the values",
         None => "points.csv has the values",
@@ -104,37 +101,23 @@ fn why_no_curves(axes: &[Axis]) -> Option<String> {
     Some(format!("there are no pictures of curves: {why}; {values}"))
 }
 
-/// Kind of the charts of a study, apart from a map.
-enum ChartKind {
-    Bars,
-    /// Curves over axis `x`; each combination of levels of the first `split` other axes has its own picture.
-    Curves {
-        x: usize,
-        split: usize,
-    },
-    Nothing(String),
-}
-
-impl ChartKind {
-    fn of(axes: &[Axis]) -> Self {
-        let mut over = numeric(axes).into_iter().map(|x| (x, split(axes, x)));
-        match (over.next(), axes.len()) {
-            (None, 0) => Self::Nothing("the study has no axis".to_owned()),
-            (None, 1 | 2) => Self::Bars,
-            (None, count) => Self::Nothing(format!(
-                "none of its {count} axes is numeric, and bars need one or two axes"
-            )),
-            (Some((x, Ok(split))), _) => Self::Curves { x, split },
-            // Another axis may need fewer curves or pictures.
-            (Some((_, Err(why))), _) => over
-                .find_map(|(x, split)| {
-                    Some(Self::Curves {
-                        x,
-                        split: split.ok()?,
-                    })
-                })
-                .unwrap_or(Self::Nothing(why)),
-        }
+/// The pictures of a quantity apart from a map; a sentence if there are none.
+fn planned_charts(axes: &[Axis], quantity: &str) -> Result<Vec<PlannedPicture>, String> {
+    let mut over = numeric(axes).into_iter().map(|x| (x, split(axes, x)));
+    match (over.next(), axes.len()) {
+        (None, 0) => Err("the study has no axis".to_owned()),
+        (None, 1 | 2) => Ok(vec![PlannedPicture {
+            name: quantity.to_owned(),
+            kind: PictureKind::Bars,
+        }]),
+        (None, count) => Err(format!(
+            "none of its {count} axes is numeric, and bars need one or two axes"
+        )),
+        (Some((x, Ok(split))), _) => Ok(planned_curves(axes, x, split, quantity)),
+        // Another axis may need fewer curves or pictures.
+        (Some((_, Err(why))), _) => over
+            .find_map(|(x, split)| Some(planned_curves(axes, x, split.ok()?, quantity)))
+            .ok_or(why),
     }
 }
 
@@ -154,14 +137,7 @@ fn map_of(axes: &[Axis]) -> Option<[usize; 2]> {
 
 /// The pictures of a quantity, determined by the axes alone.
 pub(crate) fn planned(axes: &[Axis], quantity: &str) -> Vec<PlannedPicture> {
-    let mut pictures = match ChartKind::of(axes) {
-        ChartKind::Bars => vec![PlannedPicture {
-            name: quantity.to_owned(),
-            kind: PictureKind::Bars,
-        }],
-        ChartKind::Curves { x, split } => planned_curves(axes, x, split, quantity),
-        ChartKind::Nothing(_) => Vec::new(),
-    };
+    let mut pictures = planned_charts(axes, quantity).unwrap_or_default();
     if let Some([x, y]) = map_of(axes) {
         pictures.push(PlannedPicture {
             name: format!("{quantity}_map"),
@@ -304,8 +280,8 @@ mod tests {
             let [one, other] = counts;
             axes_of(&(axis("drive.v_star", one) + &axis("friction.r_star", other)))
         };
-        let over = |axes: &[Axis]| match ChartKind::of(axes) {
-            ChartKind::Curves { x, .. } => Some(x),
+        let over = |axes: &[Axis]| match planned_charts(axes, "quantity").ok()?[0].kind {
+            PictureKind::Curves { x, .. } => Some(x),
             _ => None,
         };
         for (counts, x) in [

@@ -1,6 +1,6 @@
 //! Draws the pictures of a study.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use rayon::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::converge::on_meshes::{OnMeshes, is_over_meshes};
 use crate::error::StudyError;
 use crate::labels::{axis_symbol, axis_title, level_with_symbol, quantity_symbol, title, titled};
 use crate::levels::{Levels, combinations};
-use crate::meshed::MeshedCoverage;
+use crate::meshed_coverage::MeshedCoverage;
 use crate::picture_plan::{POLAR, PictureKind, PlannedPicture, measured_quantities, planned, polar};
 use crate::plan::{PICTURES_AT_ONCE, Plan};
 use crate::statistics::mean;
@@ -18,8 +18,8 @@ use crate::study_results::StudyResults;
 use crate::summary_values::needs_transition;
 use slipfront_base::number_format::four_digits;
 use slipfront_plot::{
-    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, PictureLook, PictureSize, Polar,
-    Response, Responses,
+    Bar, BarChart, BarGroup, Estimate, HeatAxis, HeatMap, Picture, PictureError, PictureLook, PictureSize,
+    Polar, Response, Responses,
 };
 
 /// Name of the curve of a study over meshes.
@@ -30,11 +30,11 @@ const MEANS_ON_MESHES: &str = "mean on each mesh";
 fn result_on_meshes(finest: f64, value: f64, error: f64) -> Response {
     Response {
         label: "finest mesh, with its error".to_owned(),
-        x: vec![0.0, finest],
-        mean: vec![f64::NAN, value],
-        low: vec![f64::NAN, value - error],
-        high: vec![f64::NAN, value + error],
-        ..Response::default()
+        points: vec![
+            (0.0, Estimate::NONE),
+            (finest, Estimate::between(value - error, value, value + error)),
+        ],
+        line: false,
     }
 }
 
@@ -52,18 +52,14 @@ pub(crate) fn draw(
     if let Some(Ok((over, combinations))) = polar(&plan.axes).filter(|_| look.draws(POLAR)) {
         let drawn = friction_polar(plan, results, over, &combinations, look.size);
         if let Some(picture) = drawn.transpose() {
-            let name = POLAR.to_owned();
-            hand_on(
-                POLAR.to_owned(),
-                picture.map_err(|source| StudyError::Picture { name, source })?,
-            )?;
+            hand_on(POLAR.to_owned(), named(POLAR, picture)?)?;
         }
     }
     let on_meshes = is_over_meshes(&plan.axes)
-        .then(|| OnMeshes::of(plan, results))
+        .then(|| OnMeshes::new(plan, results))
         .transpose()?;
     for quantity in measured_quantities(plan, results) {
-        let mut measured = PlottedQuantity::of(plan, results, quantity);
+        let mut measured = PlottedQuantity::new(plan, results, quantity);
         measured.on_finest_mesh = on_meshes.as_ref().and_then(|found| found.result_of(quantity));
         let mut asked = planned(&plan.axes, quantity);
         asked.retain(|picture| look.draws(&picture.name));
@@ -73,29 +69,31 @@ pub(crate) fn draw(
                 .map(|picture| measured.draw(&picture.kind, look.size))
                 .collect();
             for (PlannedPicture { name, .. }, drawn) in some.iter().zip(drawn) {
-                let name = name.clone();
-                match drawn {
-                    Ok(picture) => hand_on(name, picture)?,
-                    Err(source) => return Err(StudyError::Picture { name, source }),
-                }
+                hand_on(name.clone(), named(name, drawn)?)?;
             }
         }
     }
     Ok(())
 }
 
+/// A picture, or the error that names it.
+fn named(name: &str, picture: Result<Picture, PictureError>) -> Result<Picture, StudyError> {
+    picture.map_err(|source| StudyError::Picture {
+        name: name.to_owned(),
+        source,
+    })
+}
+
 /// A quantity at every point of a study.
 struct PlottedQuantity<'a> {
     axes: &'a [Axis],
     quantity: &'static str,
-    /// Mean and the ends of its interval, by the levels of a point; NaN where there is none.
-    values: HashMap<Vec<usize>, [f64; 3]>,
+    /// Values by the levels of a point.
+    values: HashMap<Vec<usize>, Estimate>,
     /// Meaning of the intervals.
     note: String,
     /// Number of values at each point that has one.
     counts: Vec<usize>,
-    /// Levels of the points that lack some runs because these have no transition: a cross marks them.
-    crossed: HashSet<Vec<usize>>,
     /// Number of runs without a transition.
     without_transition: usize,
     /// Meshed coverages of an axis, at which values are drawn.
@@ -105,18 +103,10 @@ struct PlottedQuantity<'a> {
 }
 
 impl<'a> PlottedQuantity<'a> {
-    fn of(plan: &'a Plan, results: &StudyResults, quantity: &'static str) -> Self {
+    fn new(plan: &'a Plan, results: &StudyResults, quantity: &'static str) -> Self {
         let samples: Vec<_> = (0..plan.points.len())
             .map(|position| results.sample(plan, position, quantity))
             .collect();
-        let value = |position: usize| {
-            let sample = samples[position];
-            let interval = sample.and_then(|sample| sample.interval());
-            let [low, high] = interval.unwrap_or([f64::NAN; 2]);
-            [sample.map_or(f64::NAN, |sample| sample.mean), low, high]
-        };
-        let points = plan.points.iter().enumerate();
-        let values = points.map(|(position, point)| (plan.levels(point), value(position)));
         let counts: Vec<usize> = samples.iter().flatten().map(|sample| sample.n).collect();
         let without = |position: usize| {
             if needs_transition(quantity) {
@@ -125,8 +115,19 @@ impl<'a> PlottedQuantity<'a> {
                 0
             }
         };
+        let value = |position: usize| {
+            let sample = samples[position];
+            let interval = sample.and_then(|sample| sample.interval());
+            let [low, high] = interval.unwrap_or([f64::NAN; 2]);
+            Estimate {
+                mean: sample.map_or(f64::NAN, |sample| sample.mean),
+                low,
+                high,
+                crossed: without(position) > 0,
+            }
+        };
         let points = plan.points.iter().enumerate();
-        let crossed = points.filter(|&(position, _)| without(position) > 0);
+        let values = points.map(|(position, point)| (plan.levels(point), value(position)));
         let without_transition = (0..plan.points.len()).map(without).sum();
         Self {
             axes: &plan.axes,
@@ -134,9 +135,8 @@ impl<'a> PlottedQuantity<'a> {
             values: values.collect(),
             note: note_on_intervals(plan.settings.confidence(), &counts, without_transition),
             counts,
-            crossed: crossed.map(|(_, point)| plan.levels(point)).collect(),
             without_transition,
-            meshed: MeshedCoverage::of(plan),
+            meshed: MeshedCoverage::from_plan(plan),
             on_finest_mesh: None,
         }
     }
@@ -151,9 +151,9 @@ impl<'a> PlottedQuantity<'a> {
         }
     }
 
-    /// The values at the point with these levels; NaN if the point is part of another shard.
-    fn at(&self, levels: &[usize]) -> [f64; 3] {
-        self.values.get(levels).copied().unwrap_or([f64::NAN; 3])
+    /// The value at the point with these levels; none if the point is part of another shard.
+    fn at(&self, levels: &[usize]) -> Estimate {
+        self.values.get(levels).copied().unwrap_or(Estimate::NONE)
     }
 
     /// The meshed coverages, if this axis is the one of coverages.
@@ -209,10 +209,13 @@ impl<'a> PlottedQuantity<'a> {
         let curves = combinations(self.axes, varied).into_iter();
         let mut curves: Vec<Response> = curves.map(|varied| self.curve(x, fixed, &varied)).collect();
         // A coverage of 0 cannot be drawn on a logarithmic scale.
-        let has_place = curves.iter().flat_map(|curve| &curve.x).all(|&x| x > 0.0);
+        let has_place = curves
+            .iter()
+            .flat_map(|curve| &curve.points)
+            .all(|(x, _)| *x > 0.0);
         if let (Some([value, error]), [curve]) = (self.on_finest_mesh, &mut curves[..]) {
             MEANS_ON_MESHES.clone_into(&mut curve.label);
-            let finest = curve.x.iter().copied().fold(f64::INFINITY, f64::min);
+            let finest = curve.points.iter().map(|(x, _)| *x).fold(f64::INFINITY, f64::min);
             curves.push(result_on_meshes(finest, value, error));
         }
         Responses {
@@ -262,29 +265,22 @@ impl<'a> PlottedQuantity<'a> {
         }
         for (number, level) in by_number(&self.axes[x]) {
             levels[x] = level;
-            let [mean, low, high] = self.at(&levels);
             let meshed = self.meshed(x).and_then(|meshed| meshed.at(&levels));
-            response.x.push(meshed.unwrap_or(number));
-            response.mean.push(mean);
-            response.low.push(low);
-            response.high.push(high);
-            response.crossed.push(self.crossed.contains(&levels));
+            let at = meshed.unwrap_or(number);
+            response.points.push((at, self.at(&levels)));
         }
         response
     }
 
     fn map(&self, x: usize, y: usize) -> HeatMap {
         let (columns, rows) = (by_number(&self.axes[x]), by_number(&self.axes[y]));
-        let (mut means, mut half_widths, mut crossed) = (Vec::new(), Vec::new(), Vec::new());
         // A map is drawn only for two axes.
         let mut levels = [0; 2];
+        let mut values = Vec::with_capacity(rows.len() * columns.len());
         for &(_, row) in &rows {
             for &(_, column) in &columns {
                 (levels[x], levels[y]) = (column, row);
-                let [mean, low, high] = self.at(&levels);
-                means.push(mean);
-                half_widths.push(0.5 * (high - low));
-                crossed.push(self.crossed.contains(&levels[..]));
+                values.push(self.at(&levels));
             }
         }
         let numbers = |asked: &[(f64, usize)]| asked.iter().map(|(number, _)| *number).collect();
@@ -302,9 +298,7 @@ impl<'a> PlottedQuantity<'a> {
             x: heat_axis(x, &columns),
             y: heat_axis(y, &rows),
             value_title: title(self.quantity),
-            values: means,
-            half_widths,
-            crossed,
+            values,
             note: self.note.clone(),
         }
     }
@@ -330,15 +324,9 @@ impl<'a> PlottedQuantity<'a> {
 
     /// Bars for the names of one axis, or in groups for two.
     fn bars(&self) -> BarChart {
-        let bar = |axis: usize, levels: &[usize]| {
-            let [mean, low, high] = self.at(levels);
-            Bar {
-                label: self.axes[axis].levels[levels[axis]].shown(),
-                mean,
-                low,
-                high,
-                crossed: self.crossed.contains(levels),
-            }
+        let bar = |axis: usize, levels: &[usize]| Bar {
+            label: self.axes[axis].levels[levels[axis]].shown(),
+            value: self.at(levels),
         };
         let levels = |axis: usize| 0..self.axes[axis].levels.len();
         let groups = if self.axes.len() == 1 {
@@ -376,7 +364,7 @@ fn friction_polar(
     let measured: Vec<PlottedQuantity> = FRICTION
         .iter()
         .filter(|(quantity, _)| measured.contains(quantity))
-        .map(|(quantity, _)| PlottedQuantity::of(plan, results, quantity))
+        .map(|(quantity, _)| PlottedQuantity::new(plan, results, quantity))
         .collect();
     if measured.is_empty() {
         return Ok(None);

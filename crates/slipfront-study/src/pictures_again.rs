@@ -10,7 +10,8 @@ use slipfront_plot::{PictureFormat, PictureLook};
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::verify::VerifyError;
 
-use crate::project_folder::{Checksums, Derivation, VerifyStudyError};
+use crate::error::StudyError;
+use crate::project_folder::{Checksums, Project};
 use crate::write::STUDY_FOLDERS;
 
 /// Largest number of bytes of a picture.
@@ -23,7 +24,7 @@ type PictureFiles = Vec<(String, Vec<u8>)>;
 pub struct PicturesOf<'f> {
     folder: &'f Path,
     /// The kind of the project.
-    derivation: &'f Derivation,
+    project: &'f Project,
     /// Names of its pictures, without their endings.
     pub names: Vec<String>,
 }
@@ -34,24 +35,24 @@ pub struct PicturesOf<'f> {
 /// When the results of the folder are not complete, or its list cannot be read.
 pub fn pictures_of<'f>(
     folder: &'f Path,
-    others: &'f [Derivation],
-) -> Result<Option<PicturesOf<'f>>, VerifyStudyError> {
+    others: &'f [Project],
+) -> Result<Option<PicturesOf<'f>>, StudyError> {
     let mut all = others.iter().chain([&STUDY_FOLDERS]);
-    let Some(derivation) = all.find(|kind| kind.kind.is_in(folder)) else {
+    let Some(project) = all.find(|project| project.kind.is_in(folder)) else {
         return Ok(None);
     };
     let list = Checksums::read(folder)?.unwrap_or_default();
     if !list.is_complete {
-        return Err(VerifyStudyError::UnfinishedSearch {
-            what: derivation.kind.name,
+        return Err(StudyError::Unfinished {
+            what: project.kind.name,
             path: folder.to_owned(),
         });
     }
-    let no_pictures = derivation.no_pictures;
+    let no_pictures = project.no_pictures;
     let names = list.files.iter().map(|file| file.name.as_str());
     Ok(Some(PicturesOf {
         folder,
-        derivation,
+        project,
         names: names
             .filter_map(|name| picture_name(name, PictureFormat::Svg, no_pictures))
             .collect(),
@@ -71,10 +72,10 @@ impl PicturesOf<'_> {
     /// # Errors
     /// When runs are missing, a picture cannot be drawn, or the system refuses to read or to write; after a
     /// stop.
-    pub fn draw(&self, look: &PictureLook, stop: &AtomicBool) -> Result<PictureFiles, VerifyStudyError> {
+    pub fn draw(&self, look: &PictureLook, stop: &AtomicBool) -> Result<PictureFiles, StudyError> {
         let temporary = TemporaryFolder::new(self.folder).map_err(VerifyError::Temporary)?;
-        self.derivation.again(self.folder, temporary.path(), look, stop)?;
-        let no_pictures = self.derivation.no_pictures;
+        self.project.again(self.folder, temporary.path(), look, stop)?;
+        let no_pictures = self.project.no_pictures;
         let is_picture = |name: &str| {
             let mut formats = look.formats.iter();
             formats.any(|format| picture_name(name, *format, no_pictures).is_some())

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::axis::{self, Axis};
 use crate::error::StudyError;
-use crate::identity::{Prepared, physics};
+use crate::identity::physics;
 use crate::plan_warnings::{Warning, Warnings, note_on_seeds};
 use crate::project_file::Base;
 use crate::shard::Shard;
@@ -74,24 +74,6 @@ const LARGE: u64 = 250_000;
 
 /// Data of a run and the warnings about it, or the error of its case.
 type Spec = Result<(RunSpec, Vec<String>), (Role, CaseError)>;
-
-/// Result of making the cases of points in a row.
-enum MadeRow {
-    /// The cases were made; data of their runs.
-    Made(Vec<Spec>),
-    /// A case has too many blocks to be made at the same time as others.
-    TooLarge,
-}
-
-impl MadeRow {
-    /// Data of the runs, if the cases were made.
-    fn specs(self) -> Vec<Spec> {
-        match self {
-            Self::Made(specs) => specs,
-            Self::TooLarge => Vec::new(),
-        }
-    }
-}
 
 /// Number of points for which cases are made before the data of their runs are collected.
 const POINTS_AT_ONCE: usize = 4096;
@@ -169,19 +151,12 @@ impl Plan {
         for (chunk, points) in self.points.chunks(POINTS_AT_ONCE).enumerate() {
             let rows = points.chunk_by(|a, b| a.index / length == b.index / length);
             let rows: Vec<&[Point]> = rows.flat_map(|row| row.chunks(POINTS_OF_A_BASE)).collect();
-            let made: Vec<MadeRow> = rows
-                .par_iter()
-                .map(|row| self.make_row(&base, row, slow, LARGE))
-                .collect();
-            let made = made.into_iter().zip(rows).flat_map(|(made, row)| {
-                let made = match made {
-                    MadeRow::TooLarge => self.make_row(&base, row, slow, u64::MAX),
-                    made @ MadeRow::Made(_) => made,
-                };
-                made.specs()
-            });
+            let make = |row: &&[Point], most| self.make_row(&base, row, slow, most);
+            let made: Vec<_> = rows.par_iter().map(|row| make(row, LARGE)).collect();
+            let made = made.into_iter().zip(rows);
+            let made = made.filter_map(|(made, row)| made.or_else(|| make(&row, u64::MAX)));
             // In order, so that the error names the first invalid point.
-            for (run, made) in made.enumerate() {
+            for (run, made) in made.flatten().enumerate() {
                 let position = chunk * POINTS_AT_ONCE + run / roles;
                 let (spec, sentences) = made.map_err(|error| invalid(Some(&self.points[position]), error))?;
                 warnings.add(position, sentences);
@@ -204,33 +179,34 @@ impl Plan {
         (slow, length)
     }
 
-    /// Makes the cases of points with the same levels of the first `slow` axes, unless one of them has more
+    /// Makes the cases of points with the same levels of the first `slow` axes; none if one of them has more
     /// blocks than `most`.
-    fn make_row(&self, base: &ParsedCase, row: &[Point], slow: usize, most: u64) -> MadeRow {
+    fn make_row(&self, base: &ParsedCase, row: &[Point], slow: usize, most: u64) -> Option<Vec<Spec>> {
         let bases = self.roles().map(|role| {
             let overrides = self.overrides(&row[0], role, 0..slow);
-            let prepared = base.prepared(&overrides).and_then(Prepared::new);
+            let prepared = base.prepared(&overrides);
             prepared.map(|base| (role, base)).map_err(|error| (role, error))
         });
         let bases = match bases.collect::<Result<Vec<_>, _>>() {
             Ok(bases) => bases,
             // The error is that of the first point.
-            Err(error) => return MadeRow::Made(vec![Err(error)]),
+            Err(error) => return Some(vec![Err(error)]),
         };
         let mut specs = Vec::with_capacity(row.len() * bases.len());
         for point in row {
             for (role, base) in &bases {
-                let file = self.varied_file(base, point, *role, slow);
+                let file = base.with(&self.overrides(point, *role, slow..self.axes.len()));
+                let file = file.and_then(|file| self.check_seeds(&file).map(|()| file));
                 let n_blocks =
                     |file: &CaseFile| file.slider.blocks.into_iter().map(u64::from).product::<u64>();
                 if file.as_ref().is_ok_and(|file| n_blocks(file) > most) {
-                    return MadeRow::TooLarge;
+                    return None;
                 }
-                let spec = file.and_then(|file| self.spec(base, file, *role));
+                let spec = file.and_then(|file| self.spec(file, *role));
                 specs.push(spec.map_err(|error| (*role, error)));
             }
         }
-        MadeRow::Made(specs)
+        Some(specs)
     }
 
     /// The roles of the runs of a point: the point itself, and its reference if the study has one.
@@ -291,29 +267,13 @@ impl Plan {
         self.trimmed(file, "point", &mut |_| true)
     }
 
-    /// The case file of a point: its base with the overrides of its levels of the axes after the first
-    /// `slow`.
-    fn varied_file(
-        &self,
-        base: &Prepared,
-        point: &Point,
-        role: Role,
-        slow: usize,
-    ) -> Result<CaseFile, CaseError> {
-        let file = base
-            .case
-            .with(&self.overrides(point, role, slow..self.axes.len()))?;
-        self.check_seeds(&file)?;
-        Ok(file)
-    }
-
     /// Makes the case of a point; returns the data of its runs, and the warnings about it.
-    fn spec(&self, base: &Prepared, file: CaseFile, role: Role) -> Result<(RunSpec, Vec<String>), CaseError> {
+    fn spec(&self, file: CaseFile, role: Role) -> Result<(RunSpec, Vec<String>), CaseError> {
         let case = self.trimmed(file, "point", &mut |_| true)?;
         let writes = self.settings.keep == RetainRuns::All;
         let spec = RunSpec {
             seed: case.file.friction.seed,
-            physics: physics(&case, base.known())?,
+            physics: physics(&case)?,
             steps: case.expected_steps(),
             n_blocks: case.model.lattice.n_blocks(),
             is_held: case.model.drive.is_held(),
@@ -356,7 +316,7 @@ impl Plan {
         file.friction.seed = self.seed(run);
         let case = self.trimmed(file, &self.folder_name(run), watch)?;
         // Only files can have changed.
-        if !case.inputs.is_empty() && physics(&case, None)? != self.spec_of(run).physics {
+        if !case.inputs.is_empty() && physics(&case)? != self.spec_of(run).physics {
             let originals = case.inputs.iter().map(|input| display_path(&input.original));
             let names: Vec<String> = originals.collect();
             let sentence = format!(
@@ -443,7 +403,7 @@ impl Plan {
     /// Memory of the largest `threads` simultaneous runs, the results of all runs and the pictures of the
     /// study, in bytes.
     pub fn memory(&self, threads: usize) -> f64 {
-        self.work().of(threads)
+        self.work().on_threads(threads)
     }
 
     fn work(&self) -> WorkMemory {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use slipfront_case::case::{Files, FilesInMemory};
 use slipfront_case::case_file::{
@@ -103,7 +104,7 @@ impl ProjectFile {
         let mut source = Source::new(file, text);
         let root = parse_noting_places(&mut source, text)?;
         let mut tables = Tables {
-            root,
+            root: root.get_ref().clone(),
             source: &source,
         };
         let base = read_base(&mut tables, file, folder)?;
@@ -116,7 +117,7 @@ impl ProjectFile {
             let sentence = unknown_key(key.get_ref(), &format!("a {} file", kind.name), &known);
             return Err(source.error_at(key.span(), sentence).into());
         }
-        let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
+        let table = without_places(root, &source)?;
         let name = name.to_owned();
         Ok((
             Self {
@@ -194,13 +195,20 @@ pub(crate) fn given(base: &Base, table: &toml::Table) -> Result<Given, StudyErro
 }
 
 /// Parses a text, and records the positions of its keys in the source.
-pub(crate) fn parse_noting_places<'t>(source: &mut Source, text: &'t str) -> Result<DeTable<'t>, CaseError> {
+pub(crate) fn parse_noting_places<'t>(
+    source: &mut Source,
+    text: &'t str,
+) -> Result<Spanned<DeTable<'t>>, CaseError> {
     let root = DeTable::parse(limit_nesting(source, 0, text)?);
-    let root = root
-        .map_err(|error| syntax_error(source, 0, &error))?
-        .into_inner();
-    source.note_places(&root);
+    let root = root.map_err(|error| syntax_error(source, 0, &error))?;
+    source.note_places(root.get_ref());
     Ok(root)
+}
+
+/// The values of a parsed text without their positions.
+pub(crate) fn without_places(root: Spanned<DeTable>, source: &Source) -> Result<toml::Table, CaseError> {
+    let table = toml::Table::deserialize(toml::Deserializer::from(root));
+    table.map_err(|error| syntax_error(source, 0, &error))
 }
 
 /// The keys of a base case.

@@ -34,11 +34,11 @@ impl RunJournal {
     /// Opens the journal of a study folder, unless another process has it open; a folder without one gets an
     /// empty file.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
-        Journal::open(folder, RUN_JOURNAL).map(Self::of)
+        Journal::open(folder, RUN_JOURNAL).map(Self::from_opened)
     }
 
     /// The runs of a journal that was opened.
-    pub(crate) fn of((journal, runs, damaged): (Journal, Vec<FinishedRun>, usize)) -> Self {
+    pub(crate) fn from_opened((journal, runs, damaged): (Journal, Vec<FinishedRun>, usize)) -> Self {
         // Each run is dropped before the next is processed.
         let results = runs.into_iter().map(|run| result_of(&run));
         Self {

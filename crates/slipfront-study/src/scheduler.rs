@@ -5,8 +5,6 @@
 
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::Receiver;
-use std::time::Duration;
 
 use crate::error::StudyError;
 use crate::finished_run::{FinishedRun, RunResult};
@@ -95,10 +93,11 @@ impl<'a> Scheduler<'a> {
         }
     }
 
-    /// Records finished runs and requests more, until no run is missing.
+    /// Records finished runs and requests more, until no run is missing. `finished` waits for runs, not for
+    /// long, and returns those that have finished since its last call.
     pub(crate) fn run(
         mut self,
-        finished: &Receiver<TaskResult>,
+        finished: impl Fn() -> Vec<TaskResult>,
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&Progress),
     ) -> Result<StudyResults, StudyError> {
@@ -107,10 +106,9 @@ impl<'a> Scheduler<'a> {
         while !self.waiting.is_empty() {
             // Checked before waiting, so runs that have finished by the stop are still recorded.
             let stopped = stop.load(Ordering::Relaxed);
-            let first = finished.recv_timeout(Duration::from_millis(100)).ok();
             // All runs that have finished meanwhile are written together, since every write waits for the
             // disk.
-            self.record(first.into_iter().chain(finished.try_iter()))?;
+            self.record(finished())?;
             if stopped {
                 return Err(StudyError::Interrupted);
             }
@@ -128,7 +126,7 @@ impl<'a> Scheduler<'a> {
     }
 
     /// Writes finished runs to the journal, then ingests them.
-    fn record(&mut self, finished: impl Iterator<Item = TaskResult>) -> Result<(), StudyError> {
+    fn record(&mut self, finished: Vec<TaskResult>) -> Result<(), StudyError> {
         let (mut records, mut failure) = (Vec::new(), None);
         for ended in finished {
             match ended {
@@ -230,7 +228,8 @@ impl<'a> Scheduler<'a> {
             .collect();
         for replicates in settings.min_replicates().max(state.evaluated + 1)..=state.requested {
             let values: Vec<f64> = values[..replicates].iter().filter_map(|value| *value).collect();
-            state.half_width = Sample::of(&values, until.confidence).and_then(|sample| sample.half_width);
+            state.half_width =
+                Sample::from_values(&values, until.confidence).and_then(|sample| sample.half_width);
             state.evaluated = replicates;
             // Some runs may lack the quantity, and the interval of very few values can be narrow by chance.
             let enough = values.len() >= settings.min_replicates();

@@ -25,7 +25,7 @@ impl Sample {
     /// ```text
     /// half width = t(n - 1, (1 + confidence)/2) s/sqrt(n)
     /// ```
-    pub fn of(values: &[f64], confidence: f64) -> Option<Self> {
+    pub fn from_values(values: &[f64], confidence: f64) -> Option<Self> {
         let n = values.len();
         if n == 0 {
             return None;
@@ -47,6 +47,11 @@ impl Sample {
             min,
             max,
         })
+    }
+
+    /// Ends of the confidence interval of the mean; none for a single value.
+    pub(crate) fn ends(&self) -> [Option<f64>; 2] {
+        self.interval().map_or([None; 2], |ends| ends.map(Some))
     }
 
     /// Confidence interval of the mean.
@@ -103,7 +108,7 @@ mod tests {
     fn equal_values_do_not_scatter() {
         for value in [0.1, 0.8907, 1e-9, -3.3] {
             for n in 2..20 {
-                let sample = Sample::of(&vec![value; n], 0.95).unwrap();
+                let sample = Sample::from_values(&vec![value; n], 0.95).unwrap();
                 assert_eq!(
                     (sample.mean, sample.deviation, sample.half_width),
                     (value, Some(0.0), Some(0.0))
@@ -115,15 +120,15 @@ mod tests {
 
     #[test]
     fn a_known_sample() {
-        let sample = Sample::of(&[1.0, 2.0, 3.0, 4.0, 5.0], 0.95).unwrap();
+        let sample = Sample::from_values(&[1.0, 2.0, 3.0, 4.0, 5.0], 0.95).unwrap();
         assert_eq!(
             (sample.n, sample.mean, sample.min, sample.max),
             (5, 3.0, 1.0, 5.0)
         );
         assert!((sample.deviation.unwrap() - 2.5_f64.sqrt()).abs() < 1e-15);
         assert!((sample.half_width.unwrap() - 2.7764451 * (0.5_f64).sqrt()).abs() < 1e-6);
-        assert_eq!(Sample::of(&[2.0], 0.95).unwrap().half_width, None);
-        assert_eq!(Sample::of(&[], 0.95), None);
+        assert_eq!(Sample::from_values(&[2.0], 0.95).unwrap().half_width, None);
+        assert_eq!(Sample::from_values(&[], 0.95), None);
     }
 
     #[test]
@@ -136,7 +141,7 @@ mod tests {
         let covered = (0..trials)
             .filter(|&trial| {
                 let values = Coefficients::draw(6, unit, unit, trial).mu_static;
-                let [low, high] = Sample::of(&values, 0.9).unwrap().interval().unwrap();
+                let [low, high] = Sample::from_values(&values, 0.9).unwrap().interval().unwrap();
                 (low..=high).contains(&100.0)
             })
             .count();

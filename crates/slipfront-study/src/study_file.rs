@@ -8,12 +8,12 @@ use toml::de::DeValue;
 
 use crate::axis::{self, Axis, AxisKeys};
 use crate::error::StudyError;
-use crate::project_file::{Base, given, parse_noting_places, read_base};
+use crate::project_file::{Base, given, parse_noting_places, read_base, without_places};
 use crate::project_folder::{Given, ProjectKind};
 use crate::summary_values::{REDUCTION, is_column, known};
 use slipfront_case::case_file::{
     CASE_TABLES, CaseError, KeyKind, Override, STUDY_TABLES, Source, Tables, header_below, key, names_of,
-    syntax_error, unknown_case_table, unknown_key, whole,
+    unknown_case_table, unknown_key, whole,
 };
 use slipfront_case::key_rows;
 use slipfront_run::names::{RUN_JOURNAL, TABLES};
@@ -249,7 +249,7 @@ impl StudyFile {
         let mut source = Source::new(file, text);
         let root = parse_noting_places(&mut source, text)?;
         let mut tables = Tables {
-            root,
+            root: root.get_ref().clone(),
             source: &source,
         };
         let base = read_base(&mut tables, file, folder)?;
@@ -258,14 +258,12 @@ impl StudyFile {
         let axes = read_axes(&mut tables)?;
         refuse_rest(&tables)?;
         refuse_conflicts(&axes, &source)?;
-        // The text has already been parsed as TOML, so it is a table.
-        let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
         Ok(Self {
             name: name.to_owned(),
             base,
             settings,
             axes,
-            table,
+            table: without_places(root, &source)?,
         })
     }
 }

@@ -67,7 +67,7 @@ impl StudyResults {
         let values: Vec<f64> = replicates
             .filter_map(|replicate| self.value(position, replicate, quantity))
             .collect();
-        Sample::of(&values, plan.settings.confidence())
+        Sample::from_values(&values, plan.settings.confidence())
     }
 
     /// Runs without a transition, which have no static friction and no reduction.

@@ -91,7 +91,7 @@ pub struct SummaryValues {
 }
 
 impl SummaryValues {
-    pub(crate) fn of(summary: &Summary) -> Self {
+    pub(crate) fn from_summary(summary: &Summary) -> Self {
         let found: HashMap<_, _> = named(summary).into_iter().collect();
         let slides = summary
             .kinetic_window_star
@@ -161,16 +161,19 @@ mod tests {
             viscous_loss_j: Some(3.0),
             ..plain.clone()
         };
-        assert_eq!(SummaryValues::of(&viscous), SummaryValues::of(&plain));
+        assert_eq!(
+            SummaryValues::from_summary(&viscous),
+            SummaryValues::from_summary(&plain)
+        );
         let Some(RunQuantity::Number(position)) = RunQuantity::named("steps") else {
             panic!("a summary has a number of steps")
         };
-        assert_eq!(SummaryValues::of(&viscous).get(position), Some(7.0));
+        assert_eq!(SummaryValues::from_summary(&viscous).get(position), Some(7.0));
     }
 
     /// Numbers that have a value in a run of this kind.
     fn values_of(transition: bool, window_from: f64) -> SummaryValues {
-        SummaryValues::of(&Summary {
+        SummaryValues::from_summary(&Summary {
             transition,
             static_friction_star: 0.6,
             static_friction: 0.3,

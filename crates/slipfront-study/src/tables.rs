@@ -4,7 +4,7 @@
 use std::io::Write;
 
 use crate::anisotropy::Anisotropy;
-use crate::meshed::MeshedCoverage;
+use crate::meshed_coverage::MeshedCoverage;
 use crate::plan::{Plan, Role};
 use crate::statistics::Sample;
 use crate::study_results::StudyResults;
@@ -74,7 +74,7 @@ pub(crate) fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static s
 /// of coverages, another column has A* as meshed.
 pub(crate) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
-    let meshed = MeshedCoverage::of(plan).map(|_| TEXTURE_PERCENT);
+    let meshed = MeshedCoverage::from_plan(plan).map(|_| TEXTURE_PERCENT);
     let names = ["point"].into_iter().chain(axis_columns(plan)).chain(meshed);
     table.write_record(names.chain(STATISTICS))?;
     let quantities = quantities(plan, results);
@@ -94,7 +94,7 @@ pub(crate) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv
             row.extend(meshed.map(|_| cell(Some(plan.texture_percent(position)))));
             row.extend([name.to_owned(), sample.map_or(0, |sample| sample.n).to_string()]);
             let numbers = sample.map(|sample| {
-                let [low, high] = sample.interval().map_or([None; 2], |ends| ends.map(Some));
+                let [low, high] = sample.ends();
                 let [mean, min, max] = [sample.mean, sample.min, sample.max].map(Some);
                 [mean, sample.deviation, low, high, min, max]
             });
@@ -123,8 +123,7 @@ pub(crate) fn anisotropy(rows: &[Anisotropy], to: impl Write) -> csv::Result<()>
             row.replicates.to_string(),
         ]);
         let with_ends = |sample: Option<Sample>| {
-            let ends = sample.and_then(|sample| sample.interval());
-            let [low, high] = ends.map_or([None; 2], |ends| ends.map(Some));
+            let [low, high] = sample.map_or([None; 2], |sample| sample.ends());
             [sample.map(|sample| sample.mean), low, high]
         };
         let found = row.found.as_ref().ok();

@@ -8,7 +8,7 @@ const PLUS_MINUS: &str = " \u{b1} ";
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let columns = header.iter().enumerate().map(|(column, name)| {
         let cells: Vec<&str> = rows.iter().map(|row| row[column].as_str()).collect();
-        TableColumn::of(name, &cells)
+        TableColumn::new(name, &cells)
     });
     let columns: Vec<TableColumn> = columns.collect();
     let line = |row: usize| {
@@ -28,7 +28,7 @@ struct TableColumn {
 }
 
 impl TableColumn {
-    fn of(name: &str, cells: &[&str]) -> Self {
+    fn new(name: &str, cells: &[&str]) -> Self {
         let aligned = aligned(cells);
         let is_number = |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit() || "-(<".contains(c));
         let is_right = cells.iter().all(|cell| is_number(cell));

@@ -182,10 +182,15 @@ impl Unknown {
 
     /// Ends of the range with their unit, for a sentence.
     pub fn range_in_words(&self) -> [String; 2] {
-        [self.from, self.to].map(|end| match &self.unit {
-            Some(unit) => format!("{} {unit}", four_digits(end)),
-            None => four_digits(end),
-        })
+        [self.from, self.to].map(|end| with_unit(four_digits(end), self.unit()))
+    }
+
+    /// Name of a column with values of the unknown, such as `texture.0.lambda (um)`.
+    pub fn column(&self) -> String {
+        match &self.unit {
+            Some(unit) => format!("{} ({unit})", self.key),
+            None => self.key.clone(),
+        }
     }
 
     /// A value of the key, as written in a file.
@@ -194,6 +199,14 @@ impl Unknown {
             Some(unit) => Value::from(format!("{value} {unit}")),
             None => Value::from(value),
         }
+    }
+}
+
+/// A number as text with its unit, if it has one.
+pub fn with_unit(number: String, unit: Option<&str>) -> String {
+    match unit {
+        Some(unit) => format!("{number} {unit}"),
+        None => number,
     }
 }
 

@@ -17,7 +17,7 @@ pub struct WorkMemory {
 
 impl WorkMemory {
     /// Memory on this many threads.
-    pub fn of(&self, threads: usize) -> f64 {
+    pub fn on_threads(&self, threads: usize) -> f64 {
         let pieces = self.pieces.iter();
         let at_once = pieces.map(|&(bytes, number)| threads.min(number) as f64 * bytes);
         self.beside + at_once.fold(0.0, f64::max)
@@ -34,7 +34,7 @@ impl WorkMemory {
         threads: usize,
         none: impl FnOnce(String, String) -> StudyError,
     ) -> Result<(), StudyError> {
-        self.compare(threads, available_of(self.of(threads)), none)
+        self.compare(threads, available_of(self.on_threads(threads)), none)
     }
 
     /// Refuses work as [`check`](Self::check) does, on a machine with `available` bytes.
@@ -47,14 +47,16 @@ impl WorkMemory {
         available: f64,
         none: impl FnOnce(String, String) -> StudyError,
     ) -> Result<(), StudyError> {
-        let needed = self.of(threads);
+        let needed = self.on_threads(threads);
         if needed <= available {
             return Ok(());
         }
-        let fit = (1..threads).rev().find(|&fewer| self.of(fewer) <= available);
+        let fit = (1..threads)
+            .rev()
+            .find(|&fewer| self.on_threads(fewer) <= available);
         let available = byte_size(available);
         Err(match fit {
-            None => none(byte_size(self.of(1)), available),
+            None => none(byte_size(self.on_threads(1)), available),
             Some(fit) => StudyError::Memory {
                 threads,
                 needed: byte_size(needed),

@@ -5,21 +5,25 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use slipfront_plot::PictureLook;
+use slipfront_run::names::RUNS;
 
 use crate::converge;
 use crate::error::StudyError;
 use crate::execute::collect;
 use crate::folder::{StudyFolder, stage, study_of};
+use crate::kept_runs::verify_kept;
 use crate::plan::Plan;
-use crate::project_folder::{Derivation, Others};
+use crate::project_folder::{Others, Project};
 use crate::study_file::STUDIES;
 use crate::study_results::StudyResults;
 
 /// Folders of studies.
-pub(crate) const STUDY_FOLDERS: Derivation = Derivation {
+pub(crate) const STUDY_FOLDERS: Project = Project {
     kind: &STUDIES,
     no_pictures: &[],
-    find_again,
+    beside: &[RUNS],
+    verify_beside: Some(verify_kept),
+    find_again: Some(find_again),
 };
 
 /// Writes the tables and pictures of a study to its folder, and removes those of earlier results. If the

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use slipfront::{Execution, Simulation};
 use slipfront_case::case::{Case, Files, FilesInMemory, Ranks};
 use slipfront_case::case_file::CaseFile;
+use slipfront_session::sentence;
 
 /// Runs a case to its end, or for `most_steps` steps at most. Returns the number of steps taken, and hashes
 /// of mu*, of all displacements and of all velocities at that time: FNV-1a of the bits of the numbers, as
@@ -15,10 +16,6 @@ use slipfront_case::case_file::CaseFile;
 /// # Errors
 /// A sentence, if the text is not a case or the run diverges.
 pub fn bits_of_run(toml: &str, files: &BTreeMap<String, Vec<u8>>, most_steps: u64) -> Result<String, String> {
-    /// Converts any error to its message.
-    fn sentence(error: impl std::fmt::Display) -> String {
-        error.to_string()
-    }
     let in_memory: FilesInMemory = files
         .iter()
         .map(|(name, contents)| (name.clone(), contents.as_slice().into()))
@@ -28,7 +25,7 @@ pub fn bits_of_run(toml: &str, files: &BTreeMap<String, Vec<u8>>, most_steps: u6
         in_memory: Some(&in_memory),
     };
     let file = CaseFile::parse(toml, "case", &[]).map_err(sentence)?;
-    let case = Case::to_run_with(file, "case", files, &mut |_| true, Ranks::ALONE).map_err(sentence)?;
+    let case = Case::to_run(file, "case", files, &mut |_| true, Ranks::ALONE).map_err(sentence)?;
     let (plan, model) = (&case.time_plan, Arc::clone(&case.model));
     let mut simulation = Simulation::new(model, plan.dt_star, None, Execution::default());
     simulation

@@ -18,8 +18,8 @@ macro_rules! exported {
 )]
 mod of_every_module {
     exported! {
-        given::room(length: usize) -> *mut u8;
-        given::begin();
+        input_bytes::room(length: usize) -> *mut u8;
+        input_bytes::begin();
     }
 }
 

@@ -7,7 +7,7 @@ use std::rc::Rc;
 use serde::Serialize;
 use slipfront_session::{Document, Event, Host, Job, OpenedCase, Presets, Task};
 
-use crate::imports::{Saying, tell};
+use crate::imports::{MessageKind, send_message};
 
 /// Unread replies from which on the page gets only answers.
 const MAX_UNREAD: u32 = 64;
@@ -51,7 +51,7 @@ impl WorkerHost {
     }
 
     /// Queues an event of a task, unless the session has dropped the task.
-    pub(crate) fn hear(&self, task: u32, event: Event) {
+    pub(crate) fn queue_event(&self, task: u32, event: Event) {
         if let Some(events) = self.events.borrow_mut().get_mut(&task) {
             events.push_back(event);
         }
@@ -59,22 +59,22 @@ impl WorkerHost {
 }
 
 /// Serialises a value as JSON.
-fn json(of: &impl Serialize) -> Vec<u8> {
+fn json(value: &impl Serialize) -> Vec<u8> {
     // These structs hold only texts and numbers, so serialisation cannot fail.
-    serde_json::to_vec(of).expect("what is said is JSON")
+    serde_json::to_vec(value).expect("what is said is JSON")
 }
 
 impl Host for WorkerHost {
     fn reply(&self, reply: String) {
-        tell(Saying::Reply, 0, reply.as_bytes());
+        send_message(MessageKind::Reply, 0, reply.as_bytes());
     }
 
     fn picture(&self, picture: Vec<u8>) {
-        tell(Saying::Picture, 0, &picture);
+        send_message(MessageKind::Picture, 0, &picture);
     }
 
     fn kymograph(&self, kymograph: Vec<u8>) {
-        tell(Saying::Kymograph, 0, &kymograph);
+        send_message(MessageKind::Kymograph, 0, &kymograph);
     }
 
     fn is_full(&self) -> bool {
@@ -110,7 +110,7 @@ impl Host for WorkerHost {
         let number = self.n_tasks.get() + 1;
         self.n_tasks.set(number);
         self.events.borrow_mut().insert(number, VecDeque::new());
-        tell(Saying::Job, number, &json(&job));
+        send_message(MessageKind::Job, number, &json(&job));
         let events = Rc::clone(&self.events);
         Ok(Box::new(WorkerTask { number, events }))
     }
@@ -122,12 +122,12 @@ impl Host for WorkerHost {
             ));
         }
         let document = &document;
-        tell(Saying::Save, 0, &json(&Saved { name, document }));
+        send_message(MessageKind::Save, 0, &json(&Saved { name, document }));
         Ok(())
     }
 
     fn stop_saving(&self, name: &str) {
-        tell(Saying::StopSaving, 0, name.as_bytes());
+        send_message(MessageKind::StopSaving, 0, name.as_bytes());
     }
 }
 
@@ -146,6 +146,6 @@ impl Task for WorkerTask {
 impl Drop for WorkerTask {
     fn drop(&mut self) {
         self.events.borrow_mut().remove(&self.number);
-        tell(Saying::End, self.number, &[]);
+        send_message(MessageKind::End, self.number, &[]);
     }
 }

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy)]
 #[repr(u32)]
 #[allow(dead_code, reason = "each module says a part of these")]
-pub(crate) enum Saying {
+pub(crate) enum MessageKind {
     /// A reply of the session.
     Reply,
     /// A picture of the field.
@@ -47,6 +47,6 @@ unsafe extern "C" {
 }
 
 /// Sends a message to the Worker, with a task number if it has one.
-pub(crate) fn tell(what: Saying, number: u32, bytes: &[u8]) {
+pub(crate) fn send_message(what: MessageKind, number: u32, bytes: &[u8]) {
     say(what as u32, number, bytes.as_ptr(), bytes.len());
 }

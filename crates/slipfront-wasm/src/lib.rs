@@ -9,12 +9,12 @@
 pub mod bits;
 #[cfg(target_family = "wasm")]
 mod exports;
-#[cfg(target_family = "wasm")]
-mod given;
 #[cfg(all(feature = "session", target_family = "wasm"))]
 mod host;
 #[cfg(target_family = "wasm")]
 mod imports;
+#[cfg(target_family = "wasm")]
+mod input_bytes;
 #[cfg(all(feature = "session", target_family = "wasm"))]
 mod session;
 #[cfg(all(feature = "work", target_family = "wasm"))]

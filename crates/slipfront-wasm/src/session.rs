@@ -6,8 +6,8 @@ use std::rc::Rc;
 use serde::Deserialize;
 use slipfront_session::{Document, Event, Host, Message, Presets, Session, failed, hello};
 
-use crate::given::{self, duration, read, refuse};
 use crate::host::WorkerHost;
+use crate::input_bytes::{self, duration, read, refuse};
 
 thread_local! {
     static PAGE: RefCell<Option<(Session, Rc<WorkerHost>)>> = const { RefCell::new(None) };
@@ -33,7 +33,7 @@ pub(crate) fn open(workers: u32) {
 
 /// Handles a message of the page.
 pub(crate) fn handle() {
-    let text = String::from_utf8(given::take()).unwrap_or_default();
+    let text = String::from_utf8(input_bytes::take()).unwrap_or_default();
     PAGE.with_borrow_mut(|page| {
         let Some((session, host)) = page else { return };
         let message = Message::parse(&text);
@@ -59,20 +59,18 @@ pub(crate) fn advance(now: f64, unread: u32) -> f64 {
 
 /// Takes an event of the task with this number.
 pub(crate) fn hear(task: u32) {
-    refuse(read().map(|event: Event| {
-        PAGE.with_borrow(|page| {
-            if let Some((_, host)) = page {
-                host.hear(task, event);
-            }
-        });
-    }));
+    refuse(read().map(|event| pass_on(task, event)));
 }
 
 /// Records that the task with this number has crashed.
 pub(crate) fn hear_lost(task: u32) {
+    pass_on(task, Event::lost());
+}
+
+fn pass_on(task: u32, event: Event) {
     PAGE.with_borrow(|page| {
         if let Some((_, host)) = page {
-            host.hear(task, Event::lost());
+            host.queue_event(task, event);
         }
     });
 }

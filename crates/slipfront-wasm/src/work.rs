@@ -8,16 +8,16 @@ use serde::Deserialize;
 use slipfront_session::{Document, Event, Job, Worker, run_archive};
 
 use crate::bits::bits_of_run;
-use crate::given::{self, duration, read, refuse};
-use crate::imports::{Saying, date, now, tell};
+use crate::imports::{MessageKind, date, now, send_message};
+use crate::input_bytes::{self, duration, read, refuse};
 
 /// The Worker of a job outside the session. It is stopped by terminating it from outside.
 struct OtherWorker(AtomicBool);
 
 impl Worker for OtherWorker {
-    fn tell(&self, event: Event) {
+    fn send(&self, event: Event) {
         if let Ok(event) = serde_json::to_vec(&event) {
-            tell(Saying::Event, 0, &event);
+            send_message(MessageKind::Event, 0, &event);
         }
     }
 
@@ -38,7 +38,7 @@ fn clock() -> Duration {
 /// The time of day: UTC, as in RFC 3339.
 fn time_of_day() -> String {
     date();
-    String::from_utf8(given::take()).unwrap_or_default()
+    String::from_utf8(input_bytes::take()).unwrap_or_default()
 }
 
 /// Runs a job outside the session, and reports its events.
@@ -49,9 +49,9 @@ pub(crate) fn run() {
 /// Runs a case from rest, and sends the archive of its files.
 pub(crate) fn save() {
     let now = || (time_of_day(), clock());
-    let report = |share: f64| tell(Saying::Share, (1e6 * share) as u32, &[]);
+    let report = |share: f64| send_message(MessageKind::Share, (1e6 * share) as u32, &[]);
     let archive = read().and_then(|document: Document| run_archive(&document, &now, &report));
-    refuse(archive.map(|archive| tell(Saying::Archive, 0, &archive)));
+    refuse(archive.map(|archive| send_message(MessageKind::Archive, 0, &archive)));
 }
 
 /// The text of a case, and the files that it names.
@@ -65,5 +65,5 @@ struct CaseOfFiles {
 pub(crate) fn bits(most_steps: u32) {
     let bits =
         read().and_then(|case: CaseOfFiles| bits_of_run(&case.toml, &case.files, u64::from(most_steps)));
-    refuse(bits.map(|bits| tell(Saying::Bits, 0, bits.as_bytes())));
+    refuse(bits.map(|bits| send_message(MessageKind::Bits, 0, bits.as_bytes())));
 }

@@ -57,17 +57,11 @@ impl Checkpoint {
 impl Model {
     /// Number of columns of a checkpoint; a column holds one number per block.
     pub fn n_columns(&self) -> usize {
-        BlockColumn::ALL.len() + self.n_memory_columns()
-    }
-
-    /// Number of columns in addition to [`BlockColumn::ALL`]: those of the law of friction.
-    pub(crate) fn n_memory_columns(&self) -> usize {
-        self.friction.n_columns()
+        BlockColumn::ALL.len() + self.friction.n_columns()
     }
 }
 
-/// A number that is kept for every block, whatever the law of friction. A law of friction with more memory
-/// adds [columns](crate::Friction::n_columns) of its own after these.
+/// A number that is kept for every block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockColumn {
     /// u_x at t_n.
@@ -81,10 +75,13 @@ pub enum BlockColumn {
     VelocityY,
     /// t* of the first slip; NaN for a block that has not slipped.
     FirstSlip,
+    /// One of the [numbers](crate::Friction::n_columns) that the law of friction remembers, counted from 0.
+    Memory(usize),
 }
 
 impl BlockColumn {
-    /// All columns, in the order in which they are passed.
+    /// The columns under every law of friction, in the order in which they are passed, before the columns of
+    /// the law.
     pub const ALL: [Self; 5] = [
         Self::DisplacementX,
         Self::DisplacementY,
@@ -96,27 +93,21 @@ impl BlockColumn {
     /// Number of blocks in a part of a column.
     const PART: usize = 1 << 16;
 
-    /// Passes all columns of `n_blocks` blocks part by part to `work`: the column, the first block, and room
-    /// for the values. Stops at the first error.
+    /// Passes all columns of the blocks of a model part by part to `work`: the number of the column, the
+    /// column, the first block, and room for the values. Stops at the first error.
     pub(crate) fn for_each_part<E>(
-        n_blocks: usize,
-        mut work: impl FnMut(Self, usize, &mut [f64]) -> Result<(), E>,
+        model: &Model,
+        mut work: impl FnMut(usize, Self, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        Self::ALL.into_iter().try_for_each(|column| {
-            Self::for_each_part_of_one(n_blocks, |first, values| work(column, first, values))
-        })
-    }
-
-    /// Passes one column of `n_blocks` blocks part by part to `work`, as [`for_each_part`] does for all
-    /// columns.
-    pub(crate) fn for_each_part_of_one<E>(
-        n_blocks: usize,
-        mut work: impl FnMut(usize, &mut [f64]) -> Result<(), E>,
-    ) -> Result<(), E> {
+        let n_blocks = model.surface.n_blocks();
         let mut values = vec![0.0; n_blocks.min(Self::PART)];
-        (0..n_blocks).step_by(Self::PART).try_for_each(|first| {
-            let len = Self::PART.min(n_blocks - first);
-            work(first, &mut values[..len])
-        })
+        let of_law = (0..model.friction.n_columns()).map(Self::Memory);
+        for (number, column) in Self::ALL.into_iter().chain(of_law).enumerate() {
+            for first in (0..n_blocks).step_by(Self::PART) {
+                let len = Self::PART.min(n_blocks - first);
+                work(number, column, first, &mut values[..len])?;
+            }
+        }
+        Ok(())
     }
 }

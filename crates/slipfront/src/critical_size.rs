@@ -89,8 +89,6 @@ impl Model {
         let nx = self.lattice.nx;
         let rows = self.surface.textured.chunks(nx);
         let in_contact = rows.map(|row| row.iter().filter(|&&textured| !textured).count());
-        let mut most = [in_contact.max().unwrap_or(0) as f64 / nx as f64];
-        ranks.largest(&mut most);
-        most[0]
+        ranks.largest_of(in_contact.max().unwrap_or(0) as f64 / nx as f64)
     }
 }

@@ -124,9 +124,7 @@ impl Rotation {
             .iter()
             .map(|&(block, _)| length(about_axis.arm(lattice, block)))
             .collect();
-        let mut radius = [radii.iter().copied().fold(0.0, f64::max)];
-        ranks.largest(&mut radius);
-        let [radius] = radius;
+        let radius = ranks.largest_of(radii.iter().copied().fold(0.0, f64::max));
         let relative = |k: usize| radii[k] / radius;
         Self {
             radius,

@@ -18,14 +18,29 @@ pub(crate) struct Forces {
     pub(crate) springs: [VectorField; 4],
 }
 
+/// Values of some blocks. All such slices have the same length, so that loops over them check no bounds.
+#[inline(always)]
+pub(crate) fn values_of<'a, T>(values: &'a [T], blocks: &Range<usize>) -> &'a [T] {
+    &values[blocks.clone()][..blocks.len()]
+}
+
+/// Values of some blocks, to be filled.
+#[inline(always)]
+pub(crate) fn values_of_mut<'a, T>(values: &'a mut [T], blocks: &Range<usize>) -> &'a mut [T] {
+    &mut values[blocks.clone()][..blocks.len()]
+}
+
 /// Components of a field over some blocks.
 #[inline(always)]
 pub(crate) fn part<'a>(field: &'a VectorField, blocks: &Range<usize>) -> [&'a [f64]; 2] {
-    [&field.x[blocks.clone()], &field.y[blocks.clone()]]
+    [values_of(&field.x, blocks), values_of(&field.y, blocks)]
 }
 
 /// Components of a field over some blocks, to be filled.
 #[inline(always)]
 pub(crate) fn part_mut<'a>(field: &'a mut VectorField, blocks: &Range<usize>) -> [&'a mut [f64]; 2] {
-    [&mut field.x[blocks.clone()], &mut field.y[blocks.clone()]]
+    [
+        values_of_mut(&mut field.x, blocks),
+        values_of_mut(&mut field.y, blocks),
+    ]
 }

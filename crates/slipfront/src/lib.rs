@@ -22,12 +22,12 @@
 //! assert!((simulation.peak().time_star - 8.0 / 3.0 / 0.03).abs() < 0.2);
 //! ```
 
+pub mod block_sets;
 pub mod checkpoint;
 pub mod device;
 pub mod exact_solutions;
 pub mod kernel;
 pub mod observe;
-pub mod opening;
 pub mod parallel;
 pub mod scales;
 pub mod stability;

@@ -9,7 +9,7 @@ use crate::communicator::Communicator;
 use crate::dead_load::DeadLoad;
 use crate::drive::{Drive, Loading, Program};
 use crate::friction::Friction;
-use crate::lattice::{Edges, K_DRIVE, Lattice, SpringStiffness};
+use crate::lattice::{Edges, K_DRIVE, Lattice};
 use crate::slider::Slider;
 use crate::surface::Surface;
 use crate::vector_field::{dot, length};
@@ -30,8 +30,6 @@ pub struct Model {
     pub(crate) slider: Slider,
     /// The bulk body of which the blocks are the face; none for a sheet, with springs between its blocks.
     pub(crate) body: Option<Body>,
-    /// Springs between neighbouring blocks of a sheet.
-    pub(crate) springs: SpringStiffness,
     /// Friction of every block of these rows.
     pub surface: Surface,
     /// The drive of the slider.
@@ -80,7 +78,6 @@ impl Model {
             rows,
             slider: Slider::default(),
             body: None,
-            springs: SpringStiffness::default(),
             surface,
             drive,
             dead_load: DeadLoad::default(),
@@ -158,17 +155,12 @@ impl Model {
         let first = self.rows.start;
         let blocks = self.lattice.blocks_of(&(rows.start - first..rows.end - first));
         Self {
-            lattice: self.lattice,
             rows,
             slider: self.slider.of_some_blocks(&blocks),
-            body: self.body,
-            springs: self.springs,
             surface: self.surface.of_some_blocks(&blocks),
             drive: self.drive.clone(),
             dead_load: self.dead_load.of_some_blocks(&blocks),
-            damping: self.damping,
-            epsilon: self.epsilon,
-            friction: self.friction,
+            ..*self
         }
     }
 
@@ -212,9 +204,9 @@ impl Model {
         self.body.is_some() && self.drive.is_held()
     }
 
-    /// Springs between neighbouring blocks of a sheet.
-    pub fn springs(&self) -> SpringStiffness {
-        self.springs
+    /// Index in the whole lattice of the first block that this process holds.
+    pub(crate) fn first_block(&self) -> usize {
+        self.lattice.blocks_of(&self.rows).start
     }
 
     /// Number of existing blocks of the whole lattice.
@@ -226,9 +218,8 @@ impl Model {
     /// blocks in contact, in units of `E h`; none if strength does not fall with slip.
     pub fn weakening(&self) -> Option<f64> {
         let law = self.friction.strength_over_slip()?;
-        let share_in_contact = self.surface.n_contact() as f64 / self.surface.n_facing() as f64;
-        let drop = (self.surface.mean_static_force() - self.surface.mean_kinetic_force()) / share_in_contact;
-        Some(drop / law.length)
+        let drop = self.surface.mean_static_force() - self.surface.mean_kinetic_force();
+        Some(drop / self.surface.share_in_contact() / law.length)
     }
 
     /// Divisor of the sum of the forces of the drive springs in mu*: the number of [facing
@@ -279,8 +270,7 @@ impl Model {
     /// Share of the load that the blocks in contact bear: less than 1 if the load of textured blocks is not
     /// redistributed.
     pub fn share_of_load(&self) -> f64 {
-        let in_contact = self.surface.n_contact() as f64 / self.surface.n_facing() as f64;
-        (in_contact * self.surface.load_factor()).min(1.0)
+        (self.surface.share_in_contact() * self.surface.load_factor()).min(1.0)
     }
 
     /// The longest time in which mu* falls from its peak half-way to the [level of
@@ -373,7 +363,6 @@ impl Model {
 
     /// Relative radius `r_i/r_max` of block `b` of these rows in a rotation.
     pub(crate) fn relative_radius(&self, b: usize) -> f64 {
-        let first = self.lattice.blocks_of(&self.rows).start;
-        length(self.drive.direction_at(&self.lattice, first + b))
+        length(self.drive.direction_at(&self.lattice, self.first_block() + b))
     }
 }

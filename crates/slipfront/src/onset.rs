@@ -36,8 +36,7 @@ impl Model {
             }
         };
         let [borne, _] = self.mean_dead_load();
-        let in_contact = self.surface.n_contact() as f64 / self.surface.n_facing() as f64;
-        let adhesion = self.surface.adhesion().of_static * in_contact;
+        let adhesion = self.surface.adhesion().of_static * self.surface.share_in_contact();
         let more = (adhesion - borne * self.share_along_friction()) / K_DRIVE;
         let delay = self.friction.loading_delay(self.drive.k_drive);
         [early, late].map(|path| {
@@ -86,9 +85,7 @@ impl Model {
                     0.0 => 0.0,
                     pull => pull / self.slider.drive_spring(b),
                 });
-                let mut negative = [-missing.fold(f64::INFINITY, f64::min)];
-                ranks.largest(&mut negative);
-                -negative[0]
+                ranks.least_of(missing.fold(f64::INFINITY, f64::min))
             } else {
                 self.surface.min_slip_threshold()
             };
@@ -111,9 +108,8 @@ impl Model {
             }
         };
         let in_contact = (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b]);
-        let mut negative = [-in_contact.map(path).fold(f64::INFINITY, f64::min)];
-        ranks.largest(&mut negative);
-        Some(self.drive.time_of_path(-negative[0] * delay))
+        let least = ranks.least_of(in_contact.map(path).fold(f64::INFINITY, f64::min));
+        Some(self.drive.time_of_path(least * delay))
     }
 
     /// Pull along the drive at which block `b` slips, in addition to its dead load; 0 if the dead load alone

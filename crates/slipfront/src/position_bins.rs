@@ -32,14 +32,14 @@ impl PositionBins {
     /// ```
     /// use slipfront::{Drive, Lattice, PositionBins};
     /// let lattice = Lattice::free(4, 3);
-    /// let along_x = PositionBins::of(&lattice, &Drive::along_x(0.1));
+    /// let along_x = PositionBins::new(&lattice, &Drive::along_x(0.1));
     /// assert_eq!((along_x.count, along_x.start, along_x.bin(2, 1)), (4, 0.0, 2));
-    /// let along_y = PositionBins::of(&lattice, &Drive::at_angle(0.1, 90.0));
+    /// let along_y = PositionBins::new(&lattice, &Drive::at_angle(0.1, 90.0));
     /// assert_eq!((along_y.count, along_y.start, along_y.bin(2, 1)), (3, 0.0, 1));
-    /// let against_x = PositionBins::of(&lattice, &Drive::at_angle(0.1, 180.0));
+    /// let against_x = PositionBins::new(&lattice, &Drive::at_angle(0.1, 180.0));
     /// assert_eq!((against_x.count, against_x.start, against_x.bin(3, 1)), (4, -4.0, 0));
     /// ```
-    pub fn of(lattice: &Lattice, drive: &Drive) -> Self {
+    pub fn new(lattice: &Lattice, drive: &Drive) -> Self {
         let sides = [lattice.nx, lattice.ny].map(|count| count as f64);
         let (measure, start, blocks) = match &drive.rotation {
             None => {
@@ -109,7 +109,7 @@ mod tests {
             for (nx, ny) in [(1, 1), (9, 1), (1, 9), (12, 7), (40, 40)] {
                 let lattice = Lattice::free(nx, ny);
                 let drive = Drive::at_angle(0.1, degrees);
-                let bins = PositionBins::of(&lattice, &drive);
+                let bins = PositionBins::new(&lattice, &drive);
                 let mut found = vec![0; bins.count];
                 for b in 0..lattice.n_blocks() {
                     let (i, j) = lattice.column_row(b);
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn long_sliders_have_wider_bins_and_rotations_radial_ones() {
-        let bins = PositionBins::of(&Lattice::free(2050, 1), &Drive::along_x(0.1));
+        let bins = PositionBins::new(&Lattice::free(2050, 1), &Drive::along_x(0.1));
         assert_eq!((bins.count, bins.width, bins.bin(2049, 0)), (684, 3, 683));
         let lattice = Lattice::free(9, 9);
         let rotation =
@@ -140,7 +140,7 @@ mod tests {
             rotation: Some(rotation),
             ..Drive::along_x(0.1)
         };
-        let bins = PositionBins::of(&lattice, &drive);
+        let bins = PositionBins::new(&lattice, &drive);
         // The corners are 4 sqrt(2) = 5.7 blocks from the middle.
         assert_eq!(
             (bins.count, bins.bin(4, 4), bins.bin(0, 4), bins.bin(8, 8)),

@@ -195,15 +195,9 @@ impl Simulation {
         mut write: impl FnMut(usize, usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
         let engine = &*self.engine;
-        BlockColumn::for_each_part(self.model.surface.n_blocks(), |column, first, values| {
-            engine.read_column(column, first, values);
-            write(column as usize, first, values)
-        })?;
-        (0..self.model.n_memory_columns()).try_for_each(|column| {
-            BlockColumn::for_each_part_of_one(self.model.surface.n_blocks(), |first, values| {
-                engine.read_memory(self.time_star(), column, first, values);
-                write(BlockColumn::ALL.len() + column, first, values)
-            })
+        BlockColumn::for_each_part(&self.model, |number, column, first, values| {
+            engine.read_column(self.time_star(), column, first, values);
+            write(number, first, values)
         })
     }
 
@@ -364,7 +358,7 @@ impl Simulation {
 
     /// Displacements now, velocities half a step later.
     pub fn state(&self) -> State {
-        self.engine.state()
+        self.engine.state(self.model.surface.n_blocks())
     }
 
     /// The first peak of mu* found so far.
@@ -440,7 +434,7 @@ impl Simulation {
     /// displacement. A NaN displacement counts as infinite.
     fn largest_displacement(&self) -> (usize, f64) {
         let size = |u: f64| if u.is_nan() { f64::INFINITY } else { u.abs() };
-        let first = self.model.lattice.blocks_of(&self.model.rows).start;
+        let first = self.model.first_block();
         let (mut block, mut value) = (first, 0.0);
         for b in 0..self.model.surface.n_blocks() {
             for u in self.engine.motion(b)[0] {
@@ -450,9 +444,8 @@ impl Simulation {
             }
         }
         // The lowest rank with this value has the first such block, and sends it to the others.
-        let mut largest = [size(value)];
-        self.communicator.largest(&mut largest);
-        let lowest = lowest_rank(&*self.communicator, size(value) == largest[0]);
+        let largest = self.communicator.largest_of(size(value));
+        let lowest = lowest_rank(&*self.communicator, size(value) == largest);
         let mut found = [0; 2];
         if lowest == Some(self.communicator.rank()) {
             found = [block as i64, value.to_bits() as i64];

@@ -82,10 +82,8 @@ impl DriveSprings {
 impl Outline {
     /// The outline of the blocks that this rank holds. All `ranks` must call this together.
     pub fn new(exists: Vec<bool>, ranks: &dyn Communicator) -> Self {
-        let mut count = [exists.iter().filter(|&&exists| exists).count() as i64];
-        ranks.sum(&mut count);
         Self {
-            n_blocks: count[0] as usize,
+            n_blocks: ranks.sum_of(exists.iter().filter(|&&exists| exists).count()),
             exists,
         }
     }
@@ -201,23 +199,19 @@ impl Slider {
 
     /// Properties of some of the blocks.
     pub(crate) fn of_some_blocks(&self, blocks: &Range<usize>) -> Self {
-        let some = |values: &Vec<f64>| values[blocks.clone()].to_vec();
+        let part = |values: &Vec<f64>| values[blocks.clone()].to_vec();
         Self {
-            stiffness: self.stiffness.as_ref().map(some),
-            density: self.density.as_ref().map(some),
-            mean_mass: self.mean_mass,
-            mean_slowness: self.mean_slowness,
+            stiffness: self.stiffness.as_ref().map(part),
+            density: self.density.as_ref().map(part),
             drive_springs: self.drive_springs.as_ref().map(|springs| DriveSprings {
-                relative: some(&springs.relative),
+                relative: part(&springs.relative),
                 sum: springs.sum,
             }),
-            drives_some: self.drives_some,
             outline: self.outline.as_ref().map(|outline| Outline {
                 exists: outline.exists[blocks.clone()].to_vec(),
                 n_blocks: outline.n_blocks,
             }),
-            viscosity_time: self.viscosity_time,
-            halves_edge_springs: self.halves_edge_springs,
+            ..*self
         }
     }
 
@@ -256,12 +250,10 @@ impl Slider {
     /// true. All `ranks` must call this together.
     pub fn attach(&mut self, n_blocks: usize, is_attached: impl Fn(usize) -> bool, ranks: &dyn Communicator) {
         let relative = |b: usize| if is_attached(b) { self.drive_spring(b) } else { 0.0 };
-        let mut without = [(0..n_blocks)
-            .filter(|&b| self.exists(b) && !is_attached(b))
-            .count() as i64];
-        ranks.sum(&mut without);
+        let without = (0..n_blocks).filter(|&b| self.exists(b) && !is_attached(b));
+        let n_without = ranks.sum_of(without.count());
         let springs = DriveSprings::new((0..n_blocks).map(relative).collect(), ranks);
-        (self.drive_springs, self.drives_some) = (Some(springs), without[0] > 0);
+        (self.drive_springs, self.drives_some) = (Some(springs), n_without > 0);
     }
 
     /// Attaches drive springs only to the blocks of one edge of the lattice, on the rank that holds these

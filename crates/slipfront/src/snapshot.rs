@@ -10,7 +10,7 @@ use crate::measure::{CurvePoint, Peak};
 use crate::model::Model;
 use crate::totals::{StoredEnergy, Totals};
 use crate::vector_field::dot;
-use slipfront_kernel::fixed_point::RunningSum;
+use slipfront_kernel::fixed_point::sums_by_parts;
 
 /// A run at one instant t_n. Forces, friction and contact are those of the update that starts at t_n.
 pub struct Snapshot<'a> {
@@ -40,10 +40,6 @@ pub struct Snapshot<'a> {
     pub(crate) engine: &'a dyn Engine,
     pub(crate) communicator: &'a dyn Communicator,
 }
-
-/// Number of blocks at once in sums over columns: few enough for the stack, to avoid allocating memory for
-/// all blocks at every row of a series.
-const CHUNK: usize = 1024;
 
 /// Changes of mu* below this count as rounding errors.
 pub(crate) const MU_STAR_ROUNDING: f64 = 1e-9;
@@ -128,27 +124,15 @@ impl Snapshot<'_> {
         if load.field.is_none() && slider.drive_springs.is_none() {
             return dot(load.force, self.totals.displacement);
         }
+        let axes = [BlockColumn::DisplacementX, BlockColumn::DisplacementY];
         let n_blocks = self.model.surface.n_blocks();
-        let mut values = [0.0; CHUNK];
-        let mut sums = [RunningSum::default(); 2];
-        loop {
-            for (sum, column) in sums
-                .iter_mut()
-                .zip([BlockColumn::DisplacementX, BlockColumn::DisplacementY])
-            {
-                for first in (0..n_blocks).step_by(CHUNK) {
-                    let values = &mut values[..CHUNK.min(n_blocks - first)];
-                    self.engine.read_column(column, first, values);
-                    for (b, value) in (first..).zip(&mut *values) {
-                        *value *= if slider.exists(b) { load.relative(b) } else { 0.0 };
-                    }
-                    sum.add(values);
-                }
+        let sums = sums_by_parts(self.communicator, n_blocks, |axis, first, values| {
+            self.engine.read_column(self.time_star, axes[axis], first, values);
+            for (b, value) in (first..).zip(values) {
+                *value *= if slider.exists(b) { load.relative(b) } else { 0.0 };
             }
-            if let Some(sums) = RunningSum::finish(self.communicator, &mut sums) {
-                return dot(load.force, sums);
-            }
-        }
+        });
+        dot(load.force, sums)
     }
 
     /// Energy of the foundation under an interface and of the load on it, relative to rest; 0 without an
@@ -157,25 +141,19 @@ impl Snapshot<'_> {
         let Some(interface) = self.model.friction.interface() else {
             return 0.0;
         };
-        let (surface, mut terms) = (&self.model.surface, [0.0; CHUNK]);
-        let mut sum = [RunningSum::default()];
-        loop {
-            for first in (0..surface.n_blocks()).step_by(CHUNK) {
-                let terms = &mut terms[..CHUNK.min(surface.n_blocks() - first)];
-                self.engine.read_column(BlockColumn::DisplacementY, first, terms);
-                for (b, term) in (first..).zip(terms.iter_mut()) {
-                    *term = if surface.textured[b] {
-                        0.0
-                    } else {
-                        interface.energy(surface.load(b), *term)
-                    };
-                }
-                sum[0].add(terms);
+        let surface = &self.model.surface;
+        let [energy] = sums_by_parts(self.communicator, surface.n_blocks(), |_, first, terms| {
+            self.engine
+                .read_column(self.time_star, BlockColumn::DisplacementY, first, terms);
+            for (b, term) in (first..).zip(terms) {
+                *term = if surface.textured[b] {
+                    0.0
+                } else {
+                    interface.energy(surface.load(b), *term)
+                };
             }
-            if let Some([energy]) = RunningSum::finish(self.communicator, &mut sum) {
-                return energy;
-            }
-        }
+        });
+        energy
     }
 
     /// Energy dissipated by the fall of strength since the start, a part of the friction loss: for each block
@@ -199,7 +177,8 @@ impl Snapshot<'_> {
     /// If there is not one value per block.
     pub fn read_first_slips(&self, values: &mut [f64]) {
         assert_eq!(values.len(), self.model.surface.n_blocks(), "one value per block");
-        self.engine.read_column(BlockColumn::FirstSlip, 0, values);
+        self.engine
+            .read_column(self.time_star, BlockColumn::FirstSlip, 0, values);
     }
 
     /// The next instant: whether a held drive moves until then is known now.

@@ -74,8 +74,6 @@ impl Model {
             stable_step(springs, held, slider.viscosity_time)
         };
         let blocks = (0..self.surface.n_blocks()).filter(|&b| slider.exists(b));
-        let mut largest_negative = [-blocks.map(of_block).fold(dt_star_limit(), f64::min)];
-        ranks.largest(&mut largest_negative);
-        -largest_negative[0]
+        ranks.least_of(blocks.map(of_block).fold(dt_star_limit(), f64::min))
     }
 }

@@ -49,8 +49,6 @@ pub struct Search {
     last_rest: Saved,
     /// Number of increments after which the search ends without a run-away.
     most: u64,
-    /// Number of blocks in contact.
-    n_contact: usize,
     /// Whether strength falls faster than the pull of the drive springs while all blocks slip.
     slips_on_as_a_whole: bool,
 }
@@ -76,14 +74,12 @@ impl Search {
     pub fn new(model: Model, dt_star: f64, state: Option<State>, execution: Execution) -> Self {
         let slip = model.friction.strength_over_slip().map_or(0.0, |law| law.length);
         let rise = 2.0 + model.drive.k_drive * slip;
-        let n_contact = model.surface.n_contact();
-        let share_in_contact = n_contact as f64 / model.surface.n_facing() as f64;
-        let weakening = share_in_contact * model.weakening().unwrap_or(0.0);
+        let weakening = model.surface.share_in_contact() * model.weakening().unwrap_or(0.0);
         let most = (rise / INCREMENT).ceil() as u64;
         let counts = vec![0];
         let first = with_increments(&model, dt_star, &counts);
         let simulation = Simulation::new(first, dt_star, state, execution.clone());
-        let last_rest = Saved::of(&simulation);
+        let last_rest = Saved::new(&simulation);
         Self {
             dt_star,
             execution,
@@ -91,7 +87,6 @@ impl Search {
             counts,
             last_rest,
             most,
-            n_contact,
             slips_on_as_a_whole: weakening > model.drive.k_drive,
             model,
         }
@@ -111,7 +106,7 @@ impl Search {
             if slips_too_early {
                 self = self.with_smaller_increments();
             } else if self.simulation.is_at_rest() {
-                self.last_rest = Saved::of(&self.simulation);
+                self.last_rest = Saved::new(&self.simulation);
                 let finished: u64 = self.counts[..self.counts.len() - 1].iter().sum();
                 *self.counts.last_mut().expect("there is a first size") = drive_steps - finished;
                 let is_far = drive_steps >= self.most * REFINEMENT.powi(self.counts.len() as i32 - 1) as u64;
@@ -125,7 +120,7 @@ impl Search {
                 self = self.with_smaller_increments();
             } else if self.counts.len() < SIZES
                 && self.slips_on_as_a_whole
-                && now.totals.n_slipping == self.n_contact
+                && now.totals.n_slipping == self.model.surface.n_contact()
                 && peak.is_above(mu_star)
             {
                 // It would fall half-way, too, in several times as many steps.
@@ -161,7 +156,8 @@ impl Search {
     }
 
     fn found(&self) -> Increments {
-        let (v_star, mut segments) = segments(&self.model, self.dt_star, &self.counts);
+        let v_star = speed_of_increments(&self.model, self.dt_star);
+        let mut segments = segments(v_star, self.dt_star, &self.counts);
         // One more of the smallest leads to the onset, and sliding is loaded by those of the second size.
         let steps = self.counts.iter().sum::<u64>() + 1;
         if let Some((_, until_star)) = segments.last_mut() {
@@ -178,7 +174,7 @@ impl Search {
 }
 
 impl Saved {
-    fn of(simulation: &Simulation) -> Self {
+    fn new(simulation: &Simulation) -> Self {
         let n_blocks = simulation.snapshot().model.surface.n_blocks();
         let n_columns = simulation.snapshot().model.n_columns();
         let mut columns = vec![vec![0.0; n_blocks]; n_columns];
@@ -199,11 +195,10 @@ pub fn speed_of_increments(model: &Model, dt_star: f64) -> f64 {
     INCREMENT * model.share_of_load() / (model.drive.k_drive * model.driven_share() * dt_star)
 }
 
-/// Speed V* of the largest increments, and the speed of each size up to its last t* if there are so many of
-/// it; the last size has no end.
-fn segments(model: &Model, dt_star: f64, counts: &[u64]) -> (f64, Vec<(f64, f64)>) {
-    let v_star = speed_of_increments(model, dt_star);
-    let (mut steps, mut speed) = (0, v_star);
+/// The speed of each size of increments up to its last t* if there are so many of it, from the speed of the
+/// largest; the last size has no end.
+fn segments(mut speed: f64, dt_star: f64, counts: &[u64]) -> Vec<(f64, f64)> {
+    let mut steps = 0;
     let segment = |(size, count): (usize, &u64)| {
         steps += count;
         let until_star = if size + 1 == counts.len() {
@@ -215,12 +210,13 @@ fn segments(model: &Model, dt_star: f64, counts: &[u64]) -> (f64, Vec<(f64, f64)
         speed /= REFINEMENT;
         segment
     };
-    (v_star, counts.iter().enumerate().map(segment).collect())
+    counts.iter().enumerate().map(segment).collect()
 }
 
 /// The model with these numbers of increments of each size; those of the last size have no end.
 fn with_increments(model: &Model, dt_star: f64, counts: &[u64]) -> Model {
-    let (v_star, segments) = segments(model, dt_star, counts);
+    let v_star = speed_of_increments(model, dt_star);
+    let segments = segments(v_star, dt_star, counts);
     let mut model = model.clone().with_loading(Loading::Held {
         onset_steps: u64::MAX,
     });

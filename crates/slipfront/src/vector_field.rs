@@ -50,6 +50,18 @@ pub(crate) fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] + b[0], a[1] + b[1]]
 }
 
+/// Difference of two plane vectors.
+#[inline(always)]
+pub(crate) fn subtract(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// Vector product of two plane vectors, positive where the second points to the left of the first.
+#[inline(always)]
+pub(crate) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
 /// Cosine and sine of an angle in degrees; exact along the axes and symmetric about them, so that a drive
 /// along y is the mirror image of a drive along x to the last bit.
 pub(crate) fn unit_vector(degrees: f64) -> [f64; 2] {

@@ -95,7 +95,7 @@ fn set_up() -> SetUp {
         unknowns: unknowns.collect(),
         conditions: vec![Conditions {
             overrides: Vec::new(),
-            grid: SamplePoints::of(&record).unwrap(),
+            grid: SamplePoints::from_record(&record).unwrap(),
         }],
         instrument: None,
         is_finer: false,

@@ -48,8 +48,16 @@ pub enum ArrayError {
 
 impl ArrayError {
     /// A system error about a file that is read.
-    pub(super) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
+    pub(crate) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
         move |source| Self::Read {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    /// A system error about a file that is written.
+    pub(crate) fn write(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |source| Self::Write {
             path: path.to_owned(),
             source,
         }
@@ -60,6 +68,21 @@ impl ArrayError {
 pub(super) fn contents_error(path: &Path, problem: String) -> ArrayError {
     let path = path.to_owned();
     ArrayError::Contents { path, problem }
+}
+
+/// Refuses a file of more than `longest` bytes; `takes` is what takes at most as many, with its verb.
+pub(super) fn at_most(
+    path: &Path,
+    found: u64,
+    longest: u64,
+    takes: &str,
+    remedy: &str,
+) -> Result<(), ArrayError> {
+    if found <= longest {
+        return Ok(());
+    }
+    let problem = format!("has {found} bytes where {takes} at most {longest}; {remedy}");
+    Err(contents_error(path, problem))
 }
 
 /// An error about a file that does not have the format of its extension.

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Reader, Transformations};
 
+use super::array_file::{ArrayFile, ReadAnywhere};
 use super::error::{ArrayError, broken};
 use super::pixels::limit_pixels;
 use super::slab::Slab;
@@ -37,16 +38,17 @@ pub fn mask_png(
     threshold: f64,
     slab: &Slab,
 ) -> Result<Vec<bool>, ArrayError> {
-    let reader = png_reader(path, source, Transformations::EXPAND)?;
+    let mut file = ArrayFile { path, source };
+    let reader = png_reader(&mut file, Transformations::EXPAND)?;
     read_rows(path, reader, threshold, slab)
 }
 
 /// Opens a PNG image of any colour type and depth, and checks its size and palette.
-pub(super) fn png_reader<'a, S: BufRead + Seek>(
-    path: &Path,
-    source: &'a mut S,
+pub(super) fn png_reader<'f, 'a>(
+    file: &'f mut ArrayFile<'a>,
     transformations: Transformations,
-) -> Result<Reader<&'a mut S>, ArrayError> {
+) -> Result<Reader<&'f mut (dyn ReadAnywhere + 'a)>, ArrayError> {
+    let (path, source) = (file.path, &mut *file.source);
     let read_error = ArrayError::read(path);
     let file_bytes = source.seek(SeekFrom::End(0)).map_err(&read_error)?;
     source.rewind().map_err(&read_error)?;

@@ -7,13 +7,14 @@
 //! A file is never in memory as a whole: only the requested rows are kept. Where several ranks read their
 //! rows of one file, the error of the lowest rank is the error of reading all rows.
 
+mod array_file;
 mod drawing;
 mod error;
-mod head;
 mod height_map;
 mod mask;
 mod npy;
 mod npy_header;
+mod number_type;
 mod pixels;
 mod slab;
 mod table;
@@ -30,7 +31,8 @@ pub use mask::{mask_png, png_of_mask};
 pub use npy::{head_of_state, mask_npy, npy_of_mask, state_npy};
 pub use slab::Slab;
 
-use error::{contents_error, unknown_extension};
+use array_file::ArrayFile;
+use error::{at_most, unknown_extension};
 use slipfront_base::disk::open_regular;
 
 /// Opens a file; returns it and its length in bytes.
@@ -57,32 +59,36 @@ pub fn limit_length(path: &Path, found: u64, nx: usize, ny: usize) -> Result<(),
         "csv" => of_blocks(table::PREAMBLE_MAX_BYTES, table::NUMBER_MAX_BYTES),
         _ => None,
     };
-    let longest = of_array.unwrap_or(pixels::FILE_MAX_BYTES);
-    if found <= longest {
-        return Ok(());
-    }
-    let (what, remedy) = match of_array {
-        Some(_) => (
-            format!("{ny} rows of {nx} numbers take"),
-            "write one number per block, or change `blocks`",
-        ),
-        None => ("an image takes".to_owned(), "scale it down"),
+    let Some(longest) = of_array else {
+        return at_most(
+            path,
+            found,
+            pixels::FILE_MAX_BYTES,
+            "an image takes",
+            "scale it down",
+        );
     };
-    let problem = format!("has {found} bytes where {what} at most {longest}; {remedy}");
-    Err(contents_error(path, problem))
+    let takes = format!("{ny} rows of {nx} numbers take");
+    at_most(
+        path,
+        found,
+        longest,
+        &takes,
+        "write one number per block, or change `blocks`",
+    )
 }
-
 /// Refuses a height map that is longer than 256 MiB. The map may have any number of points per block.
 ///
 /// # Errors
 /// [`ArrayError`] with both lengths.
 pub fn limit_length_of_height_map(path: &Path, found: u64) -> Result<(), ArrayError> {
-    let longest = pixels::FILE_MAX_BYTES;
-    if found > longest {
-        let problem = format!("has {found} bytes where a height map takes at most {longest}; scale it down");
-        return Err(contents_error(path, problem));
-    }
-    Ok(())
+    at_most(
+        path,
+        found,
+        pixels::FILE_MAX_BYTES,
+        "a height map takes",
+        "scale it down",
+    )
 }
 
 /// Reads one number per block of some rows from a `.npy` or `.csv` file called `path`.
@@ -98,7 +104,12 @@ pub fn limit_length_of_height_map(path: &Path, found: u64) -> Result<(), ArrayEr
 /// zero.
 pub fn field(path: &Path, source: &mut (impl BufRead + Seek), slab: &Slab) -> Result<Vec<f64>, ArrayError> {
     let is_wrong = |value: f64| !value.is_finite() || value < 0.0;
-    values(path, source, slab, "a finite number >= 0", is_wrong)
+    values(
+        &mut ArrayFile { path, source },
+        slab,
+        "a finite number >= 0",
+        is_wrong,
+    )
 }
 
 /// Reads one number per block of some rows from a `.npy` or `.csv` file called `path`, as [`field`] does,
@@ -111,20 +122,20 @@ pub fn signed_field(
     source: &mut (impl BufRead + Seek),
     slab: &Slab,
 ) -> Result<Vec<f64>, ArrayError> {
-    values(path, source, slab, "a finite number", |value| !value.is_finite())
+    let is_wrong = |value: f64| !value.is_finite();
+    values(&mut ArrayFile { path, source }, slab, "a finite number", is_wrong)
 }
 
 fn values(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
+    file: &mut ArrayFile,
     slab: &Slab,
     wanted: &str,
     is_wrong: impl Fn(f64) -> bool,
 ) -> Result<Vec<f64>, ArrayError> {
-    match extension(path).as_str() {
-        "npy" => npy::values(path, source, slab, wanted, is_wrong),
-        "csv" => table::values(path, source, slab, wanted, is_wrong),
-        other => Err(unknown_extension(path, other, ".npy or .csv")),
+    match extension(file.path).as_str() {
+        "npy" => npy::values(file, slab, wanted, is_wrong),
+        "csv" => table::values(file, slab, wanted, is_wrong),
+        other => Err(unknown_extension(file.path, other, ".npy or .csv")),
     }
 }
 

@@ -3,9 +3,10 @@
 use std::io::{BufRead, Seek, SeekFrom};
 use std::path::Path;
 
+use super::array_file::ArrayFile;
 use super::error::{ArrayError, broken, contents_error, value_error};
-use super::head::length_and_head;
 use super::npy_header::NpyHeader;
+use super::number_type::NumberType;
 use super::pixels::{SIDE_MAX, limit_pixels};
 use super::slab::Slab;
 use slipfront_base::text::truncated;
@@ -28,7 +29,9 @@ pub fn mask_npy(
     slab: &Slab,
 ) -> Result<Vec<bool>, ArrayError> {
     let wanted = "0 or 1 (1 is a dark pixel)";
-    let values = values(path, source, slab, wanted, |value| ![0.0, 1.0].contains(&value))?;
+    let values = values(&mut ArrayFile { path, source }, slab, wanted, |value| {
+        ![0.0, 1.0].contains(&value)
+    })?;
     Ok(values.iter().map(|value| *value == 1.0).collect())
 }
 
@@ -43,7 +46,8 @@ pub fn state_npy(
     slab: &Slab,
 ) -> Result<[Vec<f64>; 4], ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
-    let mut array = NpyArray::open(path, source, |shape| {
+    let mut file = ArrayFile { path, source };
+    let mut array = NpyArray::open(&mut file, |shape| {
         if shape == [4, ny as u64, nx as u64] {
             Ok([4 * ny, nx])
         } else {
@@ -79,14 +83,14 @@ pub fn state_npy(
 
 /// The rows of a slab of an array of shape (ny, nx), in row-major order.
 pub(super) fn values(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
+    file: &mut ArrayFile,
     slab: &Slab,
     wanted: &str,
     is_wrong: impl Fn(f64) -> bool,
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
-    let mut array = NpyArray::open(path, source, |shape| {
+    let path = file.path;
+    let mut array = NpyArray::open(file, |shape| {
         if shape == [ny as u64, nx as u64] {
             Ok([ny, nx])
         } else {
@@ -115,13 +119,13 @@ pub(super) fn values(
 /// consecutive numbers of a row, with their row, counted along the first axis, and the column of the first
 /// number.
 pub(super) fn rows(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
+    file: &mut ArrayFile,
     mut take: impl FnMut([usize; 2], &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
     /// Number of values in memory at once: at least the largest number along a side.
     const BAND: usize = SIDE_MAX as usize;
-    let mut array = NpyArray::open(path, source, |shape| {
+    let path = file.path;
+    let mut array = NpyArray::open(file, |shape| {
         let &[height, width] = shape else {
             let problem = format!(
                 "has {} axes where a height map has two, (ny, nx): save the heights alone, and no colours",
@@ -157,9 +161,8 @@ pub(super) fn rows(
 }
 
 /// An open array file.
-struct NpyArray<'a, S> {
-    path: &'a Path,
-    source: &'a mut S,
+struct NpyArray<'f, 'a> {
+    file: &'f mut ArrayFile<'a>,
     number: NumberType,
     /// Whether columns are contiguous, rather than rows.
     fortran_order: bool,
@@ -169,16 +172,16 @@ struct NpyArray<'a, S> {
     at: usize,
 }
 
-impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
+impl<'f, 'a> NpyArray<'f, 'a> {
     /// Opens an array that has the wanted `shape`.
     fn open(
-        path: &'a Path,
-        source: &'a mut S,
+        file: &'f mut ArrayFile<'a>,
         shape: impl FnOnce(&[u64]) -> Result<[usize; 2], ArrayError>,
     ) -> Result<Self, ArrayError> {
-        let (length, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
+        let path = file.path;
+        let (length, head) = file.length_and_head(HEADER_MAX_BYTES)?;
         let (header, data_start) = read_header(&head, path)?;
-        let number = header.plain_type().and_then(NumberType::of).ok_or_else(|| {
+        let number = header.plain_type().and_then(NumberType::from_name).ok_or_else(|| {
             let problem = format!(
                 "holds values of type {} where real numbers, integers or booleans are wanted; convert the array with \
                  `.astype(float)` before saving it",
@@ -193,10 +196,9 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
             return Err(broken(path, ".npy", &detail));
         }
         let start = SeekFrom::Start(data_start as u64);
-        source.seek(start).map_err(ArrayError::read(path))?;
+        file.source.seek(start).map_err(ArrayError::read(path))?;
         Ok(Self {
-            path,
-            source,
+            file,
             number,
             fortran_order: header.fortran_order,
             shape,
@@ -206,24 +208,19 @@ impl<'a, S: BufRead + Seek> NpyArray<'a, S> {
 
     /// Reads consecutive numbers, beginning with the number of index `start`.
     fn read(&mut self, start: usize, numbers: &mut [f64]) -> Result<(), ArrayError> {
-        let read_error = ArrayError::read(self.path);
+        let read_error = ArrayError::read(self.file.path);
         let size = self.number.size;
         // No seek if the numbers follow directly, so that buffered bytes are not read again.
         if start != self.at {
             let ahead = (start as i64 - self.at as i64) * size as i64;
-            self.source.seek_relative(ahead).map_err(&read_error)?;
+            self.file.source.seek_relative(ahead).map_err(&read_error)?;
         }
         self.at = start + numbers.len();
         let mut piece = [0; 8192];
         for numbers in numbers.chunks_mut(piece.len() / size) {
             let stored = &mut piece[..numbers.len() * size];
-            self.source.read_exact(stored).map_err(&read_error)?;
-            match size {
-                1 => self.number.decode::<1>(stored, numbers),
-                2 => self.number.decode::<2>(stored, numbers),
-                4 => self.number.decode::<4>(stored, numbers),
-                _ => self.number.decode::<8>(stored, numbers),
-            }
+            self.file.source.read_exact(stored).map_err(&read_error)?;
+            self.number.decode(stored, numbers);
         }
         Ok(())
     }
@@ -298,92 +295,4 @@ fn wrong_shape(path: &Path, found: &[u64], nx: usize, ny: usize) -> ArrayError {
 fn in_brackets(shape: &[u64]) -> String {
     let sizes: Vec<String> = shape.iter().map(u64::to_string).collect();
     format!("({})", sizes.join(", "))
-}
-
-/// Type of the stored numbers.
-struct NumberType {
-    kind: Kind,
-    /// Size of a number: 1, 2, 4 or 8 bytes.
-    size: usize,
-    big_endian: bool,
-}
-
-#[derive(Clone, Copy)]
-enum Kind {
-    /// Unsigned integers; boolean values are 0 and 1.
-    Unsigned,
-    Signed,
-    Float,
-}
-
-impl NumberType {
-    /// The type of this name, such as `<f8`; `None` unless it is a boolean, integer or real type of at most
-    /// 64 bits.
-    fn of(name: &str) -> Option<NumberType> {
-        let mut letters = name.chars();
-        let big_endian = match letters.next()? {
-            '<' | '|' | '=' => false,
-            '>' => true,
-            _ => return None,
-        };
-        let kind = letters.next()?;
-        let (kind, size) = match (kind, letters.as_str()) {
-            ('b' | 'u', "1") => (Kind::Unsigned, 1),
-            ('i', "1") => (Kind::Signed, 1),
-            ('u' | 'i' | 'f', size @ ("2" | "4" | "8")) => {
-                let kind = match kind {
-                    'u' => Kind::Unsigned,
-                    'i' => Kind::Signed,
-                    _ => Kind::Float,
-                };
-                (kind, size.parse().ok()?)
-            }
-            _ => return None,
-        };
-        Some(NumberType {
-            kind,
-            size,
-            big_endian,
-        })
-    }
-
-    /// Decodes numbers of `SIZE` bytes, which is the `size` of the type.
-    fn decode<const SIZE: usize>(&self, stored: &[u8], numbers: &mut [f64]) {
-        for (number, stored) in numbers.iter_mut().zip(stored.as_chunks().0) {
-            *number = self.value::<SIZE>(*stored);
-        }
-    }
-
-    /// The value of `SIZE` bytes; integers beyond 2^53 are rounded.
-    #[inline(always)]
-    fn value<const SIZE: usize>(&self, mut stored: [u8; SIZE]) -> f64 {
-        if self.big_endian {
-            stored.reverse();
-        }
-        let bits = stored
-            .iter()
-            .rev()
-            .fold(0, |bits, byte| bits << 8 | u64::from(*byte));
-        let unused = 64 - 8 * SIZE as u32;
-        match (self.kind, SIZE) {
-            (Kind::Float, 2) => half(bits as u16),
-            (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
-            (Kind::Float, _) => f64::from_bits(bits),
-            // Shifting up and back down carries the sign into the unused bytes.
-            (Kind::Signed, _) => ((bits << unused) as i64 >> unused) as f64,
-            _ => bits as f64,
-        }
-    }
-}
-
-/// The value of an IEEE 754 number of 16 bits: 1 sign, 5 exponent, 10 fraction.
-fn half(bits: u16) -> f64 {
-    let fraction = f64::from(bits & 0x3ff);
-    let magnitude = match i32::from(bits >> 10 & 0x1f) {
-        0 => fraction * 2f64.powi(-24),
-        31 if fraction == 0.0 => f64::INFINITY,
-        31 => f64::NAN,
-        exponent => (1024.0 + fraction) * 2f64.powi(exponent - 25),
-    };
-    if bits >> 15 == 0 { magnitude } else { -magnitude }
 }

@@ -1,10 +1,9 @@
 //! Tables of numbers as text (`.csv`).
 
-use std::io::{BufRead, Seek};
 use std::path::Path;
 
+use super::array_file::ArrayFile;
 use super::error::{ArrayError, contents_error, value_error};
-use super::head::length_and_head;
 use super::pixels::{SIDE_MAX, limit_pixels};
 use super::slab::Slab;
 use crate::table::{HEAD_BYTES, TableError, TableLayout, TableOptions, TableRows, number};
@@ -20,16 +19,16 @@ const LINE_MAX_BYTES: u64 = 8 * SIDE_MAX;
 
 /// The rows of a slab of `ny` lines of `nx` numbers. Earlier lines are only counted; later ones are not read.
 pub(super) fn values(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
+    file: &mut ArrayFile,
     slab: &Slab,
     wanted: &str,
     is_wrong: impl Fn(f64) -> bool,
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
     let line_max = PREAMBLE_MAX_BYTES.saturating_add((nx as u64).saturating_mul(NUMBER_MAX_BYTES));
-    let (length, layout) = layout_of(path, source)?;
-    let mut lines = TableRows::new(source, &layout, line_max);
+    let path = file.path;
+    let (length, layout) = layout_of(file)?;
+    let mut lines = TableRows::new(&mut *file.source, &layout, line_max);
     // A number and its separator take at least two bytes.
     let mut values = Vec::with_capacity(slab.n_blocks().min(length as usize / 2 + 1));
     let mut row = 0;
@@ -49,7 +48,8 @@ pub(super) fn values(
             }
             for (column, field) in fields.iter().enumerate() {
                 let at = [row, column];
-                let value = number_at(path, field, layout.decimal, at, line)?;
+                let value = number(field, layout.decimal);
+                let value = value.ok_or_else(|| no_number(path, field, layout.decimal, at, line))?;
                 if is_wrong(value) {
                     let value = format!("{value} in line {line},");
                     return Err(value_error(path, &value, at, wanted));
@@ -69,33 +69,27 @@ pub(super) fn values(
 /// columns and rows. `take` gets each row, with its index and the column 0. Where there may be `gaps`, fields
 /// without a digit, such as empty ones, `Bad` or `---`, are NaN.
 pub(super) fn rows(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
+    file: &mut ArrayFile,
     layout: &TableLayout,
     gaps: bool,
     mut take: impl FnMut([usize; 2], &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
-    source.rewind().map_err(ArrayError::read(path))?;
-    let mut lines = TableRows::new(source, layout, LINE_MAX_BYTES);
+    let path = file.path;
+    file.source.rewind().map_err(ArrayError::read(path))?;
+    let mut lines = TableRows::new(&mut *file.source, layout, LINE_MAX_BYTES);
     let mut values = Vec::new();
     let (mut columns, mut row) = (None, 0);
     while let Some((line, fields)) = lines.next_row().map_err(table_error(path))? {
         values.clear();
         for (column, field) in fields.iter().enumerate() {
-            let is_gap = number(field, layout.decimal).is_none()
-                && !field.contains(|sign: char| sign.is_ascii_digit());
-            if is_gap && gaps {
-                values.push(f64::NAN);
-                continue;
-            }
-            let value = number_at(path, field, layout.decimal, [row, column], line);
-            values.push(value.map_err(|error| {
-                if is_gap {
-                    gap_error(path, field, [row, column], line)
-                } else {
-                    error
-                }
-            })?);
+            let at = [row, column];
+            let has_digit = || field.contains(|sign: char| sign.is_ascii_digit());
+            values.push(match number(field, layout.decimal) {
+                Some(value) => value,
+                None if has_digit() => return Err(no_number(path, field, layout.decimal, at, line)),
+                None if gaps => f64::NAN,
+                None => return Err(gap_error(path, field, at, line)),
+            });
         }
         let wanted = *columns.get_or_insert(values.len());
         if values.len() != wanted {
@@ -114,9 +108,9 @@ pub(super) fn rows(
 
 /// The length of a table in bytes, and its layout. Every line must have numbers: a line of column names is
 /// refused as a row.
-fn layout_of(path: &Path, source: &mut (impl BufRead + Seek)) -> Result<(u64, TableLayout), ArrayError> {
-    let (length, head) = length_and_head(path, source, HEAD_BYTES)?;
-    let layout = TableLayout::find(&head, TableOptions::default()).map_err(table_error(path))?;
+fn layout_of(file: &mut ArrayFile) -> Result<(u64, TableLayout), ArrayError> {
+    let (length, head) = file.length_and_head(HEAD_BYTES)?;
+    let layout = TableLayout::find(&head, TableOptions::default()).map_err(table_error(file.path))?;
     Ok((length, layout.of_numbers_alone()))
 }
 
@@ -138,18 +132,15 @@ fn table_error(path: &Path) -> impl Fn(TableError) -> ArrayError {
     }
 }
 
-/// The number of a field in the row and column `at`, in line `line` of the file.
-fn number_at(path: &Path, field: &str, decimal: char, at: [usize; 2], line: u64) -> Result<f64, ArrayError> {
-    number(field, decimal).ok_or_else(|| {
-        let field = format!("`{}` in line {line},", excerpt(field));
-        let wanted = match decimal {
-            '.' => "a number with a decimal point",
-            _ => "a number with a decimal comma, as others of the table have,",
-        };
-        value_error(path, &field, at, wanted)
-    })
+/// The error of a field that is no number, in the row and column `at`, in line `line` of the file.
+fn no_number(path: &Path, field: &str, decimal: char, at: [usize; 2], line: u64) -> ArrayError {
+    let field = format!("`{}` in line {line},", excerpt(field));
+    let wanted = match decimal {
+        '.' => "a number with a decimal point",
+        _ => "a number with a decimal comma, as others of the table have,",
+    };
+    value_error(path, &field, at, wanted)
 }
-
 /// The error of a field without a digit in a map, in the row and column `at`.
 fn gap_error(path: &Path, field: &str, [row, column]: [usize; 2], line: u64) -> ArrayError {
     let what = if field.is_empty() {

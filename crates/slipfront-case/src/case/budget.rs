@@ -47,6 +47,12 @@ const RESULTS: f64 = 1.5 * MIB;
 /// blocks for which it does so.
 const GATHERED: [f64; 2] = [5.0, (1 << 22) as f64];
 
+/// Words for a run that begins, in a refusal because of its memory.
+const RUN: &str = "a run of this case";
+
+/// Remedy for a run that is resumed, the case of which can no longer be changed.
+const RESUMED_REMEDY: &str = "give it more, in a queue for example with `--mem`";
+
 /// Least number of steps from one slip event to the next, for a slider that is driven at an edge. The least
 /// measured number is 175.
 const STEPS_OF_EVENT: u64 = 50;
@@ -88,24 +94,78 @@ pub struct Budget {
     inputs: f64,
 }
 
-/// A cause of memory or disk use.
-struct Cause {
-    /// The key of the case that causes the use.
-    key: &'static str,
-    /// Number and kind of the items that take the memory.
-    what: String,
-    /// Change by which the run takes less.
-    remedy: &'static str,
-}
-
 /// A part of the memory and disk space of a run.
 struct Part {
-    /// Function that builds the text of the cause. It is called only for a refusal, because many small cases
-    /// are checked.
-    cause: fn(&Budget) -> Cause,
+    /// The key of the case that causes the use.
+    key: &'static str,
+    /// Number and kind of the items that take the bytes.
+    what: fn(&Budget) -> String,
+    /// Change by which the run takes less.
+    remedy: &'static str,
     /// Bytes in memory, in files, and in a checkpoint.
-    bytes: [f64; 3],
+    bytes: fn(&Budget) -> [f64; 3],
 }
+
+/// The parts that depend on a key of the case.
+const PARTS: [Part; 6] = [
+    Part {
+        key: "slider.blocks",
+        what: |budget| count(budget.blocks as usize, "block"),
+        remedy: "lower `slider.blocks`",
+        bytes: |budget| {
+            [
+                // Includes the displacements of the driven ends, from which the last displacements count.
+                budget.blocks * (NUMBER * budget.numbers[1] * budget.bands + 1.5 * budget.state),
+                26.0 * budget.cells[1] + budget.state * budget.all_blocks,
+                budget.all_blocks * NUMBER * budget.columns,
+            ]
+        },
+    },
+    Part {
+        key: "output.snapshots",
+        what: |budget| {
+            format!(
+                "{} of {}",
+                count(budget.frames as usize, "snapshot"),
+                count(budget.fields as usize, "field")
+            )
+        },
+        remedy: "use fewer `output.snapshots` or `output.fields`, or increase `output.stride`",
+        bytes: |budget| {
+            let [own, all] = budget.snapshots();
+            [own, all, all]
+        },
+    },
+    Part {
+        key: "output.series",
+        what: |budget| format!("{} of the series", count(budget.rows as usize, "row")),
+        remedy: "raise `output.series`",
+        bytes: |budget| [750.0, 400.0, 200.0].map(|bytes| bytes * budget.rows),
+    },
+    Part {
+        key: "drive.attach",
+        what: |budget| count(budget.events_at_edge as usize, "slip event"),
+        remedy: "shorten the run",
+        bytes: |budget| [500.0, 250.0, 250.0].map(|bytes| bytes * budget.events_at_edge),
+    },
+    Part {
+        key: "output.events",
+        what: |budget| count(budget.events as usize, "slip event"),
+        remedy: "shorten the run, or leave `output.events` out",
+        bytes: |budget| {
+            // The path from which the slip of each block is counted.
+            let paths = when(budget.events > 0.0, NUMBER * budget.blocks);
+            let events = budget.events;
+            [800.0 * events + paths, 300.0 * events, 80.0 * events]
+        },
+    },
+    Part {
+        key: "texture",
+        what: |_| "the files that it reads".to_owned(),
+        remedy: "scale them down, or use fewer",
+        bytes: |budget| [budget.laid, budget.inputs, 0.0],
+    },
+];
 
 /// Places in which a run takes bytes, in the order of [`Part::bytes`].
 #[derive(Clone, Copy)]
@@ -134,12 +194,8 @@ impl Budget {
         let masks = shapes().filter(|shape| !shape.has_outline()).count();
         let has_heights = shapes().any(|shape| matches!(shape, Shape::HeightMap(_)));
         // The mean heights are computed over the whole lattice.
-        let heights = if has_heights { 3.0 * NUMBER } else { 0.0 };
-        let shares = if file.shares_load_nearby() {
-            SHARED * NUMBER
-        } else {
-            0.0
-        };
+        let heights = when(has_heights, 3.0 * NUMBER);
+        let shares = when(file.shares_load_nearby(), SHARED * NUMBER);
         Self {
             blocks,
             numbers: numbers_of_block(file, friction),
@@ -164,11 +220,12 @@ impl Budget {
         inputs: &[Input],
     ) -> Self {
         let lattice = &model.lattice;
-        // The number of steps in which a held drive stops is not known in advance.
-        let most_steps = if model.drive.is_held() {
-            u64::MAX
+        // The number of steps in which a held drive stops is not known in advance. Two events are separated
+        // by a step without slip, in which the drive moves.
+        let (most_steps, most_events) = if model.drive.is_held() {
+            (u64::MAX, last_step.saturating_add(1))
         } else {
-            last_step
+            (last_step, last_step / 2 + 1)
         };
         let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
         let columns = kept(0..lattice.nx);
@@ -180,97 +237,23 @@ impl Budget {
             frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
-            events_at_edge: match file.drive.edge() {
-                Some(_) => last_step.div_ceil(STEPS_OF_EVENT) as f64,
-                None => 0.0,
-            },
-            events: if file.output.events {
-                // Two events are separated by a step without slip, in which the drive moves.
-                let most = if model.drive.is_held() {
-                    last_step
-                } else {
-                    last_step / 2
-                };
-                (most + 1).min(Events::MAX as u64) as f64
-            } else {
-                0.0
-            },
+            events_at_edge: when(
+                file.drive.edge().is_some(),
+                last_step.div_ceil(STEPS_OF_EVENT) as f64,
+            ),
+            events: when(file.output.events, most_events.min(Events::MAX as u64) as f64),
             kymograph: Kymograph::max_counts(lattice, most_steps) as f64,
-            movie: if output.movie { frames } else { 0.0 },
-            state: if output.final_state { 4.0 * NUMBER } else { 0.0 },
+            movie: when(output.movie, frames),
+            state: when(output.final_state, 4.0 * NUMBER),
             inputs: inputs.iter().map(|input| input.length as f64).sum(),
             ..self
         }
     }
 
-    /// Parts of the memory and disk space.
-    fn parts(&self) -> [Part; 6] {
-        let [cells, all_cells] = self.cells;
-        let snapshots = |cells: f64| self.frames * (256.0 + self.fields * (64.0 + 4.0 * cells));
-        [
-            Part {
-                cause: |budget| Cause {
-                    key: "slider.blocks",
-                    what: count(budget.blocks as usize, "block"),
-                    remedy: "lower `slider.blocks`",
-                },
-                bytes: [
-                    // Includes the displacements of the driven ends, which the last displacements are
-                    // relative to.
-                    self.blocks * (NUMBER * self.numbers[1] * self.bands + 1.5 * self.state),
-                    26.0 * all_cells + self.state * self.all_blocks,
-                    self.all_blocks * NUMBER * self.columns,
-                ],
-            },
-            Part {
-                cause: |budget| Cause {
-                    key: "output.snapshots",
-                    what: format!(
-                        "{} of {}",
-                        count(budget.frames as usize, "snapshot"),
-                        count(budget.fields as usize, "field")
-                    ),
-                    remedy: "use fewer `output.snapshots` or `output.fields`, or increase `output.stride`",
-                },
-                bytes: [snapshots(cells), snapshots(all_cells), snapshots(all_cells)],
-            },
-            Part {
-                cause: |budget| Cause {
-                    key: "output.series",
-                    what: format!("{} of the series", count(budget.rows as usize, "row")),
-                    remedy: "raise `output.series`",
-                },
-                bytes: [750.0, 400.0, 200.0].map(|bytes| bytes * self.rows),
-            },
-            Part {
-                cause: |budget| Cause {
-                    key: "drive.attach",
-                    what: count(budget.events_at_edge as usize, "slip event"),
-                    remedy: "shorten the run",
-                },
-                bytes: [500.0, 250.0, 250.0].map(|bytes| bytes * self.events_at_edge),
-            },
-            Part {
-                cause: |budget| Cause {
-                    key: "output.events",
-                    what: count(budget.events as usize, "slip event"),
-                    remedy: "shorten the run, or leave `output.events` out",
-                },
-                bytes: [
-                    800.0 * self.events + self.paths_before(),
-                    300.0 * self.events,
-                    80.0 * self.events,
-                ],
-            },
-            Part {
-                cause: |_| Cause {
-                    key: "texture",
-                    what: "the files that it reads".to_owned(),
-                    remedy: "scale them down, or use fewer",
-                },
-                bytes: [self.laid, self.inputs, 0.0],
-            },
-        ]
+    /// Bytes of the snapshots, of this process and of the whole lattice.
+    fn snapshots(&self) -> [f64; 2] {
+        self.cells
+            .map(|cells| self.frames * (256.0 + self.fields * (64.0 + 4.0 * cells)))
     }
 
     /// Bytes in a place, including those that do not depend on any key of the case.
@@ -284,41 +267,22 @@ impl Budget {
             }
             Place::Checkpoint => RESULTS + 8.0 * self.kymograph,
         };
-        self.parts()
-            .iter()
-            .map(|part| part.bytes[place as usize])
-            .sum::<f64>()
-            + beside
-    }
-
-    /// Bytes of the path from which the slip of each block is counted, in a run with a catalogue of events.
-    fn paths_before(&self) -> f64 {
-        if self.events > 0.0 {
-            NUMBER * self.blocks
-        } else {
-            0.0
-        }
+        let parts = PARTS.iter().map(|part| (part.bytes)(self)[place as usize]);
+        parts.sum::<f64>() + beside
     }
 
     /// Bytes for the blocks of other ranks that the first rank gathers.
     fn gathered(&self) -> f64 {
         let [numbers, most] = GATHERED;
-        if self.is_shared {
-            NUMBER * numbers * self.all_blocks.min(most)
-        } else {
-            0.0
-        }
+        when(self.is_shared, NUMBER * numbers * self.all_blocks.min(most))
     }
 
     /// Bytes for drawing pictures and movie, in addition to those of the run, which has released its
     /// snapshots.
     fn drawing(&self) -> f64 {
-        if self.movie == 0.0 {
-            return PICTURES;
-        }
-        let ([_, cells], [_, snapshots, ..]) = (self.cells, self.parts());
-        let more = memory_of_movie(self.movie, cells) - snapshots.bytes[Place::Memory as usize];
-        PICTURES + more.max(0.0)
+        let ([_, cells], [snapshots, _]) = (self.cells, self.snapshots());
+        let more = memory_of_movie(self.movie, cells) - snapshots;
+        PICTURES + when(self.movie > 0.0, more.max(0.0))
     }
 
     /// Memory for making the case, in bytes.
@@ -340,7 +304,7 @@ impl Budget {
 
     /// Memory of a run without that of the program, in bytes.
     fn of_run(&self, writes: bool) -> f64 {
-        self.total(Place::Memory) + if writes { self.drawing() } else { 0.0 }
+        self.total(Place::Memory) + when(writes, self.drawing())
     }
 
     /// Memory of a run with its files and pictures, in bytes; per rank if there are several.
@@ -360,8 +324,8 @@ impl Budget {
 
     /// Disk space for the snapshots alone, in bytes.
     pub fn disk_of_snapshots(&self) -> f64 {
-        let [_, snapshots, ..] = self.parts();
-        snapshots.bytes[Place::Files as usize]
+        let [_, all] = self.snapshots();
+        all
     }
 
     /// Disk space for checkpoints during the run, in bytes: the latest, the one before it, and the one that
@@ -374,19 +338,14 @@ impl Budget {
     /// array has been allocated yet.
     pub(super) fn check_case(&self, file: &CaseFile, to_run: bool) -> Result<(), CaseError> {
         let (whose, budget) = if to_run {
-            ("a run of this case", *self)
+            (RUN, *self)
         } else {
-            let [made, _] = self.numbers;
-            let numbers = [made, made];
-            let bands = 1.0;
-            (
-                "this case",
-                Self {
-                    numbers,
-                    bands,
-                    ..*self
-                },
-            )
+            let made = Self {
+                numbers: [self.numbers[0]; 2],
+                bands: 1.0,
+                ..*self
+            };
+            ("this case", made)
         };
         if self.ranks_on_node * budget.of_run(false) < Self::SMALL {
             return Ok(());
@@ -401,24 +360,12 @@ impl Budget {
     /// A sentence with both figures, the cause of the largest part, and the key to change.
     pub fn check_memory(&self, file: &CaseFile, is_resumed: bool) -> Result<(), CaseError> {
         let made = self.blocks * NUMBER * self.numbers[0];
-        self.compare_run(file, is_resumed, made, available_memory())
-    }
-
-    fn compare_run(
-        &self,
-        file: &CaseFile,
-        is_resumed: bool,
-        had: f64,
-        available: Option<f64>,
-    ) -> Result<(), CaseError> {
         let (whose, remedy) = if is_resumed {
-            // The case of a resumed run can no longer be changed.
-            let remedy = "give it more, in a queue for example with `--mem`";
-            ("resuming this run", Some(remedy))
+            ("resuming this run", Some(RESUMED_REMEDY))
         } else {
-            ("a run of this case", None)
+            (RUN, None)
         };
-        self.compare(file, whose, remedy, had, available)
+        self.compare(file, whose, remedy, made, available_memory())
     }
 
     /// Refuses a demand for more memory than there is: each rank has already taken `had` bytes, and another
@@ -450,13 +397,12 @@ impl Budget {
             1.0 => String::new(),
             ranks => format!(", {} for the {ranks} ranks of this machine", byte_size(on_node)),
         };
-        let (cause, bytes) = self.most(Place::Memory);
-        let (needed, most) = (byte_size(of_rank), cause.in_words(bytes));
-        let remedy = remedy.unwrap_or(cause.remedy);
+        let (part, most) = self.most(Place::Memory);
+        let (needed, remedy) = (byte_size(of_rank), remedy.unwrap_or(part.remedy));
         let sentence = format!(
             "{whose} needs about {needed} of memory{each} ({most}){together}, but {bound}: {remedy}{or}"
         );
-        Err(file.source.error(cause.key, sentence))
+        Err(file.source.error(part.key, sentence))
     }
 
     /// Refuses a run if its files, and its checkpoints if it saves any, do not fit into `folder`, which need
@@ -474,60 +420,56 @@ impl Budget {
         let Some(free) = free_disk(folder).map(|free| free + replaced as f64) else {
             return Ok(());
         };
-        let beside = if checkpoints {
-            self.disk_of_checkpoints()
-        } else {
-            0.0
-        };
-        if self.disk() + beside <= free {
+        let of_checkpoints = when(checkpoints, self.disk_of_checkpoints());
+        if self.disk() + of_checkpoints <= free {
             return Ok(());
         }
         let (beside, without) = if checkpoints {
             (
-                format!(" and its checkpoints {}", byte_size(beside)),
+                format!(" and its checkpoints {}", byte_size(of_checkpoints)),
                 ", run without checkpoints (--checkpoint off)",
             )
         } else {
             (String::new(), "")
         };
-        let (cause, bytes) = self.most(Place::Files);
+        let (part, most) = self.most(Place::Files);
         let sentence = format!(
-            "the files of this run need about {} ({}){beside}, but {} are free in {}: free some, {}{without}, or choose another \
+            "the files of this run need about {} ({most}){beside}, but {} are free in {}: free some, {}{without}, or choose another \
              folder",
             byte_size(self.disk()),
-            cause.in_words(bytes),
             byte_size(free),
             folder.display(),
-            cause.remedy
+            part.remedy
         );
-        Err(file.source.error(cause.key, sentence))
+        Err(file.source.error(part.key, sentence))
     }
 
-    /// Cause of the largest part of the bytes in a place, and the bytes of this part.
-    fn most(&self, place: Place) -> (Cause, f64) {
-        let bytes_of = |part: &Part| part.bytes[place as usize];
-        let [mut most, others @ ..] = self.parts();
-        for part in others {
-            if bytes_of(&part) >= bytes_of(&most) {
-                most = part;
+    /// The largest part of the bytes in a place, and its bytes in words.
+    fn most(&self, place: Place) -> (&'static Part, String) {
+        let bytes_of = |part: &Part| (part.bytes)(self)[place as usize];
+        let [first, others @ ..] = &PARTS;
+        let larger = |most, part| {
+            if bytes_of(part) >= bytes_of(most) {
+                part
+            } else {
+                most
             }
-        }
-        let bytes = bytes_of(&most);
-        ((most.cause)(self), bytes)
+        };
+        let most = others.iter().fold(first, larger);
+        let words = format!("{} of it for {}", byte_size(bytes_of(most)), (most.what)(self));
+        (most, words)
     }
+}
+
+/// A number if something is so, else 0.
+fn when(is_so: bool, number: f64) -> f64 {
+    if is_so { number } else { 0.0 }
 }
 
 /// Memory for making a movie of this many pictures of at most `cells` blocks, in bytes. Larger lattices are
 /// averaged to maps.
 pub fn memory_of_movie(pictures: f64, cells: f64) -> f64 {
     MOVIE + pictures * (1e5 + 4.0 * cells.min(MAP_BLOCKS))
-}
-
-impl Cause {
-    /// The cause and its bytes, in words.
-    fn in_words(&self, bytes: f64) -> String {
-        format!("{} of it for {}", byte_size(bytes), self.what)
-    }
 }
 
 /// Numbers per block in the model of a case file, and with the kernel that steps it on one thread.
@@ -543,34 +485,18 @@ fn numbers_of_block(file: &CaseFile, friction: &Friction) -> [f64; 2] {
     ];
     let many = |options: &[bool]| options.iter().filter(|is_used| **is_used).count() as f64;
     let own = 2.0 * many(&varies) + 2.0 * many(&[has_outline, has_pressures]);
-    let blocks_differ = own > 0.0;
     let stepped = match kernel(file, friction) {
         Kernel::Fused if varies.contains(&true) || needs.varies => 22.0 + 2.0 * many(&varies[3..]),
         Kernel::Fused => 10.0 + own,
-        Kernel::General => {
-            let differing = if blocks_differ { 9.0 } else { 0.0 };
-            let dampers = if is_viscous(file) { 12.0 } else { 0.0 };
-            29.0 + differing + dampers
-        }
+        Kernel::General => 29.0 + when(own > 0.0, 9.0) + when(is_viscous(file), 12.0),
     };
-    let stepped = match slider.body {
-        Body::Bulk => stepped + NUMBERS_OF_BODY,
-        Body::Sheet => stepped,
-    };
-    let stepped = stepped + 2.0 * needs.columns as f64;
+    let is_bulk = slider.body == Body::Bulk;
+    let stepped = stepped + when(is_bulk, NUMBERS_OF_BODY) + 2.0 * needs.columns as f64;
     // The search for the strength of a bulk body has a simulation of its own, and its last rest.
-    let searched = if slider.body == Body::Bulk && file.drive.loading == Loading::Held {
-        stepped + 7.0
-    } else {
-        0.0
-    };
+    let searched = when(is_bulk && file.drive.loading == Loading::Held, stepped + 7.0);
     // While a kernel is made, the state of the case exists twice.
-    let [state, begun] = if file.initial.is_at_rest() {
-        [0.0; 2]
-    } else {
-        [4.0, 8.0]
-    };
-    [3.0 + own + state, stepped + begun + searched]
+    let state = when(!file.initial.is_at_rest(), 4.0);
+    [3.0 + own + state, stepped + 2.0 * state + searched]
 }
 
 /// Numbers per block of the whole lattice while the load of textured blocks is shared among nearby blocks:
@@ -611,7 +537,7 @@ mod tests {
 
     /// Message with which a new run with this budget is refused, if it is refused.
     fn refusal(case: &Case, budget: &Budget, had: f64, available: Option<f64>) -> Option<String> {
-        let compared = budget.compare_run(&case.file, false, had, available);
+        let compared = budget.compare(&case.file, RUN, None, had, available);
         compared.err().map(|error| error.to_string())
     }
 
@@ -710,7 +636,7 @@ mod tests {
         let refused = refusal(&case, &huge, 0.0, None).unwrap();
         assert!(refused.contains("ulimit -v"), "{refused}");
         // No key of a run that has begun can be changed.
-        let refused = budget.compare_run(&case.file, true, made, Some(0.0));
+        let refused = budget.compare(&case.file, RUN, Some(RESUMED_REMEDY), made, Some(0.0));
         let refused = refused.unwrap_err().to_string();
         assert!(
             refused.contains("give it more") && !refused.contains("lower"),

@@ -6,8 +6,7 @@ use slipfront::surface::{
 };
 use slipfront::{Lattice, Scales};
 
-use super::files::Watch;
-use super::groups::Groups;
+use super::dimensionless_groups::Groups;
 use super::inputs::Inputs;
 use super::textures::pitch;
 use crate::case_file::{Body, CaseError, CaseFile, FrictionAlong, Near, Redistribute};
@@ -50,18 +49,12 @@ pub(super) fn correlated_field(file: &CaseFile, lattice: &Lattice) -> Option<Cor
     correlation_length(file).map(|length| CorrelatedField::new(lattice, length))
 }
 
-pub(super) fn coefficients(
-    file: &CaseFile,
-    groups: &Groups,
-    lattice: &Lattice,
-    inputs: &Inputs,
-    watch: &mut Watch,
-) -> Result<Coefficients, CaseError> {
+pub(super) fn coefficients(inputs: &mut Inputs, groups: &Groups) -> Result<Coefficients, CaseError> {
+    let (file, lattice) = (inputs.file, inputs.lattice);
     let friction = &file.friction;
     let mean = friction.mu_static;
-    let mut read = |key: &str, name| inputs.read_field(file, key, name, watch);
-    let mu_static = read("friction.mu_static_field", &friction.mu_static_field)?;
-    let mu_kinetic = read("friction.mu_kinetic_field", &friction.mu_kinetic_field)?;
+    let mu_static = inputs.read_field("friction.mu_static_field", &friction.mu_static_field)?;
+    let mu_kinetic = inputs.read_field("friction.mu_kinetic_field", &friction.mu_kinetic_field)?;
     // A given field replaces the draws of its own stream; the other stream does not shift.
     let spread = |mean: f64, sigma_star: f64, given: bool| Distribution {
         mean,
@@ -122,13 +115,8 @@ pub(super) fn sharing_distance(
 }
 
 /// Contact of a surface: load and adhesion.
-pub(super) fn contact(
-    file: &CaseFile,
-    scales: &Scales,
-    lattice: &Lattice,
-    inputs: &Inputs,
-    watch: &mut Watch,
-) -> Result<Contact, CaseError> {
+pub(super) fn contact(inputs: &mut Inputs) -> Result<Contact, CaseError> {
+    let (file, scales, lattice) = (inputs.file, inputs.scales, inputs.lattice);
     let load = match file.load.redistribute {
         Redistribute::All(false) => Load::Kept,
         Redistribute::All(true) | Redistribute::Near(_) => Load::Redistributed,
@@ -137,7 +125,7 @@ pub(super) fn contact(
     let is_upright = file.friction.along == FrictionAlong::X;
     let blocks = lattice.blocks_of(&inputs.slab.rows);
     let faces = is_upright.then(|| blocks.map(|b| b < lattice.nx).collect());
-    let given = inputs.read_field(file, "load.pressure_field", &file.load.pressure_field, watch)?;
+    let given = inputs.read_field("load.pressure_field", &file.load.pressure_field)?;
     let pressure = match &file.load.profile {
         Some(profile) => Some(pressure_along(
             lattice,

@@ -7,7 +7,7 @@ use slipfront::{Friction, Lattice, Scales};
 
 use super::budget::Budget;
 use super::coefficients::check_correlation;
-use super::groups::Groups;
+use super::dimensionless_groups::Groups;
 use super::ranks::Ranks;
 use crate::case_file::{Body, CaseError, CaseFile, DriveStiffness, FrictionAlong};
 use crate::quantity::Length;
@@ -23,7 +23,7 @@ pub(super) struct Derived {
 impl Derived {
     /// Derives the quantities. Refuses numbers outside the range of the model, and cases that do not fit into
     /// memory.
-    pub(super) fn of(
+    pub(super) fn new(
         file: &CaseFile,
         lattice: &Lattice,
         rows: &Range<usize>,
@@ -31,7 +31,7 @@ impl Derived {
         to_run: bool,
     ) -> Result<Self, CaseError> {
         let scales = scales(file);
-        let groups = Groups::of(file, &scales)?;
+        let groups = Groups::new(file, &scales)?;
         check_correlation(file)?;
         let n_ranks = ranks.communicator.size();
         if n_ranks > lattice.ny {

@@ -4,11 +4,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use slipfront::lattice::K_DRIVE;
-use slipfront::{Body, Communicator, Drive, Lattice, Model, Program, Rotation, Scales, Slider};
+use slipfront::{Body, Communicator, Drive, Lattice, Model, Program, Rotation, Slider};
 
 use super::derived::Derived;
-use super::files::Watch;
-use super::groups::within;
+use super::dimensionless_groups::within;
 use super::inputs::Inputs;
 use crate::case_file::{
     Attached, AutoOrStiffness, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
@@ -21,16 +20,12 @@ const MAX_ANGLE: f64 = 1e-3;
 const HEIGHT_OF_DEEP: f64 = 5.0;
 
 /// The blocks of these rows that have a drive spring, if a file gives them.
-pub(super) fn attached(
-    file: &CaseFile,
-    inputs: &Inputs,
-    watch: &mut Watch,
-) -> Result<Option<Vec<bool>>, CaseError> {
-    let Attached::File(name) = &file.drive.attached else {
+pub(super) fn attached(inputs: &mut Inputs) -> Result<Option<Vec<bool>>, CaseError> {
+    let Attached::File(name) = &inputs.file.drive.attached else {
         return Ok(None);
     };
-    let (key, slab) = ("drive.attach_file", &inputs.slab);
-    let attached = inputs.read_mask(file, key, name, DEFAULT_THRESHOLD, slab, watch);
+    let slab = inputs.slab.clone();
+    let attached = inputs.read_mask("drive.attach_file", name, DEFAULT_THRESHOLD, &slab);
     attached.map(Some)
 }
 
@@ -74,11 +69,17 @@ pub(super) fn drive(
     ranks: &dyn Communicator,
 ) -> Result<Drive, CaseError> {
     let (scales, groups) = (&derived.scales, &derived.groups);
-    let is_given = file.drive.stiffness != DriveStiffness::Each(AutoOrStiffness::Auto);
-    let k_drive = match (file.slider.bulk_body(), total(file, scales)) {
-        (Some(body), _) if !is_given => mount(&body, lattice),
-        (_, Some(total)) => total / slider.sum_of_drive_springs(lattice),
-        (_, None) => each(file, scales),
+    let shared = |total: f64| total / slider.sum_of_drive_springs(lattice);
+    let k_drive = match &file.drive.stiffness {
+        DriveStiffness::Each(AutoOrStiffness::Auto) => match file.slider.bulk_body() {
+            Some(body) => mount(&body, lattice),
+            None => K_DRIVE,
+        },
+        DriveStiffness::Each(AutoOrStiffness::Stiffness(each)) => each.si() / scales.stiffness(),
+        DriveStiffness::EachStar(each) => *each,
+        DriveStiffness::PerArea(per_area) => scales.stiffness_of_area(per_area.si()),
+        DriveStiffness::Total(total) => shared(total.si() / scales.stiffness()),
+        DriveStiffness::TotalStar(total) => shared(*total),
     };
     within(
         file,
@@ -100,25 +101,6 @@ pub(super) fn drive(
         rotation,
         ..Drive::at_angle(groups.v_star, file.drive.direction)
     })
-}
-
-/// Stiffness of all drive springs together, if the case states it.
-fn total(file: &CaseFile, scales: &Scales) -> Option<f64> {
-    match &file.drive.stiffness {
-        DriveStiffness::Total(total) => Some(total.si() / scales.stiffness()),
-        DriveStiffness::TotalStar(total) => Some(*total),
-        _ => None,
-    }
-}
-
-/// Stiffness of each drive spring, unless the case states their total stiffness.
-fn each(file: &CaseFile, scales: &Scales) -> f64 {
-    match &file.drive.stiffness {
-        DriveStiffness::Each(AutoOrStiffness::Stiffness(each)) => each.si() / scales.stiffness(),
-        DriveStiffness::EachStar(each) => *each,
-        DriveStiffness::PerArea(per_area) => scales.stiffness_of_area(per_area.si()),
-        _ => K_DRIVE,
-    }
 }
 
 /// The program of the case, if it has one, with changes of speed rounded to steps.

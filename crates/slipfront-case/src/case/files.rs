@@ -1,7 +1,6 @@
 //! Locations of the files that a case names: a folder, or memory.
 
 use std::collections::HashMap;
-use std::fs::File;
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
@@ -31,38 +30,17 @@ impl<'a> From<&'a Path> for Files<'a> {
     }
 }
 
-/// An open file.
-#[derive(Debug)]
-pub enum OpenFile {
-    /// A file on the disk.
-    OnDisk(File),
-    /// A file in memory.
-    InMemory(Cursor<Arc<[u8]>>),
-}
+/// An open file, on the disk or in memory.
+pub type OpenFile = Box<dyn ReadSeek>;
 
-impl OpenFile {
-    /// Opens contents that are in memory.
-    pub(super) fn in_memory(contents: &Arc<[u8]>) -> Self {
-        Self::InMemory(Cursor::new(Arc::clone(contents)))
-    }
-}
+/// Contents of a file that can be read from any place.
+pub trait ReadSeek: Read + Seek {}
 
-impl Read for OpenFile {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        match self {
-            Self::OnDisk(file) => file.read(bytes),
-            Self::InMemory(contents) => contents.read(bytes),
-        }
-    }
-}
+impl<T: Read + Seek> ReadSeek for T {}
 
-impl Seek for OpenFile {
-    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
-        match self {
-            Self::OnDisk(file) => file.seek(place),
-            Self::InMemory(contents) => contents.seek(place),
-        }
-    }
+/// Opens contents that are in memory.
+pub(super) fn open_in_memory(contents: &Arc<[u8]>) -> OpenFile {
+    Box::new(Cursor::new(Arc::clone(contents)))
 }
 
 /// A file with reads that can be stopped: each read first calls `watch`, for every file format. The file ends

@@ -1,21 +1,15 @@
 //! The state in which a run of a case begins.
 
-use slipfront::{Lattice, Scales, Slider, State};
-
-use super::files::Watch;
 use super::inputs::Inputs;
-use crate::case_file::{CaseError, CaseFile, Loading};
+use crate::arrays;
+use crate::case_file::{CaseError, CaseFile, FileUse, Loading};
+use slipfront::{Scales, Slider, State};
 use slipfront_base::number_format::four_digits;
 
 /// Displacements and velocities of the blocks of these rows, in units of u* and V*; none if the case begins
 /// at rest.
-pub(super) fn state(
-    file: &CaseFile,
-    scales: &Scales,
-    blocks: (&Lattice, &Slider),
-    inputs: &Inputs,
-    watch: &mut Watch,
-) -> Result<Option<State>, CaseError> {
+pub(super) fn state(inputs: &mut Inputs, slider: &Slider) -> Result<Option<State>, CaseError> {
+    let file = inputs.file;
     if file.initial.is_at_rest() {
         return Ok(None);
     }
@@ -25,12 +19,12 @@ pub(super) fn state(
         velocity: v,
     } = &mut state;
     let components = [&mut u.x, &mut u.y, &mut v.x, &mut v.y];
-    let given = given(file, inputs, watch)?;
+    let given = given(inputs)?;
     for ((number, (key, mut given)), values) in given.into_iter().enumerate().zip(components) {
         let is_velocity = number >= 2;
-        let factor = over_units_of_model(file, scales)[usize::from(is_velocity)];
+        let factor = over_units_of_model(file, inputs.scales)[usize::from(is_velocity)];
         given.iter_mut().for_each(|value| *value *= factor);
-        check(file, (&key, &given), is_velocity, blocks, inputs.slab.rows.start)?;
+        check(inputs, (&key, &given), is_velocity, slider)?;
         if !given.is_empty() {
             *values = given;
         }
@@ -40,16 +34,19 @@ pub(super) fn state(
 
 /// Displacements along x and y, and velocities along both, in the units of the files, each with its key;
 /// without numbers where all are 0.
-fn given(file: &CaseFile, inputs: &Inputs, watch: &mut Watch) -> Result<[(String, Vec<f64>); 4], CaseError> {
-    if let Some(name) = &file.initial.state_file {
-        let key = "initial.state_file";
-        let of_run = inputs.read_state(file, (key, name), watch)?;
+fn given(inputs: &mut Inputs) -> Result<[(String, Vec<f64>); 4], CaseError> {
+    let initial = &inputs.file.initial;
+    if let Some(name) = &initial.state_file {
+        let (key, slab) = ("initial.state_file", inputs.slab.clone());
+        let of_run = inputs.read(key, name, FileUse::State, |path, source| {
+            arrays::state_npy(path, source, &slab)
+        })?;
         return Ok(of_run.map(|values| (key.to_owned(), values)));
     }
-    let [[ux, uy], [vx, vy]] = file.initial.files();
+    let [[ux, uy], [vx, vy]] = initial.files();
     let mut read = |(key, name): (&str, &Option<String>)| -> Result<_, CaseError> {
         let key = format!("initial.{key}");
-        let values = inputs.read_signed_field(file, &key, name, watch)?;
+        let values = inputs.read_signed_field(&key, name)?;
         Ok((key, values.unwrap_or_default()))
     };
     Ok([read(ux)?, read(uy)?, read(vx)?, read(vy)?])
@@ -72,12 +69,12 @@ fn over_units_of_model(file: &CaseFile, scales: &Scales) -> [f64; 2] {
 
 /// Refuses initial values that no block can have.
 fn check(
-    file: &CaseFile,
+    inputs: &Inputs,
     (key, values): (&str, &[f64]),
     is_velocity: bool,
-    (lattice, slider): (&Lattice, &Slider),
-    first_row: usize,
+    slider: &Slider,
 ) -> Result<(), CaseError> {
+    let (file, lattice) = (inputs.file, inputs.lattice);
     let is_held = is_velocity && file.drive.loading == Loading::Held;
     let wrong: [(&dyn Fn(usize) -> bool, &str); 3] = [
         (
@@ -96,7 +93,7 @@ fn check(
     ];
     for (is_wrong, why) in wrong {
         if let Some(b) = (0..values.len()).find(|&b| is_wrong(b)) {
-            let (i, j) = lattice.column_row(first_row * lattice.nx + b);
+            let (i, j) = lattice.column_row(inputs.slab.rows.start * lattice.nx + b);
             let sentence = format!(
                 "block ({i}, {j}) has {} in units of the model: {why}",
                 four_digits(values[b])

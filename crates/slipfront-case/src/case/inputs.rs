@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use blake3::Hasher;
-use slipfront::{Communicator, Lattice};
+use slipfront::{Communicator, Lattice, Scales};
 
-use super::files::{Files, OpenFile, Watch, Watched};
+use super::files::{Files, OpenFile, Watch, Watched, open_in_memory};
 use super::ranks::Ranks;
-use crate::arrays::{self, ArrayError, Drawing, Slab};
+use crate::arrays::{self, ArrayError, Slab};
 use crate::case_file::{CaseError, CaseFile, FileUse};
-use crate::same::{NamedInputs, expect_same, of_all, words_of};
+use crate::same_on_ranks::{NamedInputs, expect_same, of_all, words_of};
 use slipfront_base::disk::open_regular;
 use slipfront_base::machine::machine_number;
 use slipfront_base::text::{display_path, single_line};
@@ -62,8 +62,8 @@ impl Input {
     /// When the file is on the disk and is not a readable regular file.
     pub fn open(&self) -> io::Result<OpenFile> {
         match &self.contents {
-            Some(contents) => Ok(OpenFile::in_memory(contents)),
-            None => open_regular(&self.original).map(OpenFile::OnDisk),
+            Some(contents) => Ok(open_in_memory(contents)),
+            None => Ok(Box::new(open_regular(&self.original)?)),
         }
     }
 }
@@ -177,7 +177,7 @@ impl NamedFiles {
                 original,
                 contents.map(|(contents, _)| contents),
                 found.holds,
-                [lattice.nx, lattice.ny],
+                lattice,
             );
             let digest = opened.and_then(|opened| match contents {
                 Some((contents, hash)) => Ok((contents.len() as u64, *hash)),
@@ -260,10 +260,7 @@ impl FoundFile {
 
 /// Stamp of a file: its identity on this machine, and the time of its last change.
 fn stamp(path: &Path) -> Result<String, ArrayError> {
-    let metadata = path.metadata().map_err(|source| ArrayError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let metadata = path.metadata().map_err(ArrayError::read(path))?;
     #[cfg(unix)]
     let identity = {
         use std::os::unix::fs::MetadataExt;
@@ -291,23 +288,23 @@ fn hash_of_words(words: [i64; 4]) -> blake3::Hash {
     blake3::Hash::from_bytes(bytes)
 }
 
-/// Opens a file in memory or on the disk, and limits its length to what its use on a lattice of `nx` x `ny`
-/// blocks requires. Returns the file and its length.
+/// Opens a file in memory or on the disk, and limits its length to what its use on this lattice requires.
+/// Returns the file and its length.
 fn open(
     original: &Path,
     contents: Option<&Arc<[u8]>>,
     holds: FileUse,
-    [nx, ny]: [usize; 2],
+    &Lattice { nx, ny, .. }: &Lattice,
 ) -> Result<(OpenFile, u64), ArrayError> {
-    let (opened, length) = match contents {
-        Some(contents) => (OpenFile::in_memory(contents), contents.len() as u64),
+    let (opened, length): (OpenFile, u64) = match contents {
+        Some(contents) => (open_in_memory(contents), contents.len() as u64),
         None => {
             let (file, length) = arrays::open(original)?;
-            (OpenFile::OnDisk(file), length)
+            (Box::new(file), length)
         }
     };
     match holds {
-        FileUse::Blocks => arrays::limit_length(original, length, nx, ny)?,
+        FileUse::Numbers | FileUse::Blocks => arrays::limit_length(original, length, nx, ny)?,
         FileUse::HeightMap => arrays::limit_length_of_height_map(original, length)?,
         FileUse::Drawing => arrays::limit_length_of_drawing(original, length)?,
         FileUse::State => arrays::limit_length(original, length, nx, 4 * ny)?,
@@ -332,50 +329,48 @@ fn read_watched<T>(
 
 fn digest(path: &Path, source: impl Read) -> Result<Digest, ArrayError> {
     let mut hasher = Hasher::new();
-    hasher.update_reader(source).map_err(|source| ArrayError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    hasher.update_reader(source).map_err(ArrayError::read(path))?;
     Ok((hasher.count(), hasher.finalize()))
 }
 
-/// The files that a case reads, and the rows that are read from them.
-pub(super) struct Inputs {
-    pub(super) files: Vec<Input>,
+/// A case file with its units and lattice, and the files that it names, of which some rows are read.
+pub(super) struct Inputs<'a, 'w> {
+    pub(super) file: &'a CaseFile,
+    pub(super) scales: &'a Scales,
+    pub(super) lattice: &'a Lattice,
+    pub(super) files: &'a [Input],
     pub(super) slab: Slab,
+    pub(super) watch: &'a mut Watch<'w>,
 }
 
-impl Inputs {
+impl Inputs<'_, '_> {
     /// Reads the input file with this name in the case, given by `key`, for the use `holds`.
-    fn read<T>(
-        &self,
-        file: &CaseFile,
-        (key, name): (&str, &str),
+    pub(super) fn read<T>(
+        &mut self,
+        key: &str,
+        name: &str,
         holds: FileUse,
-        watch: &mut Watch,
         read: impl FnOnce(&Path, &mut BufReader<Watched>) -> Result<T, ArrayError>,
     ) -> Result<T, CaseError> {
-        let Slab { nx, ny, .. } = self.slab;
         let input = self.files.iter().find(|input| input.name == name);
         let original = input.map_or(Path::new(name), |input| &input.original);
         let contents = input.and_then(|input| input.contents.as_ref());
-        let opened = open(original, contents, holds, [nx, ny]);
-        let read = opened.and_then(|opened| read_watched(opened, watch, |source| read(original, source)));
-        read.map_err(|error| placed(file, key, error))
+        let opened = open(original, contents, holds, self.lattice);
+        let read =
+            opened.and_then(|opened| read_watched(opened, self.watch, |source| read(original, source)));
+        read.map_err(|error| placed(self.file, key, error))
     }
 
     /// Reads the image or array with this name in the case, given by `key`: whether each block of the slab is
     /// dark, or 1.
     pub(super) fn read_mask(
-        &self,
-        file: &CaseFile,
+        &mut self,
         key: &str,
         name: &str,
         threshold: f64,
         slab: &Slab,
-        watch: &mut Watch,
     ) -> Result<Vec<bool>, CaseError> {
-        self.read(file, (key, name), FileUse::Blocks, watch, |path, source| {
+        self.read(key, name, FileUse::Blocks, |path, source| {
             if is_array(path) {
                 arrays::mask_npy(path, source, slab)
             } else {
@@ -384,78 +379,30 @@ impl Inputs {
         })
     }
 
-    /// Reads the height map with this name in the case, given by `key`.
-    pub(super) fn read_height_map<T>(
-        &self,
-        file: &CaseFile,
-        key: &str,
-        name: &str,
-        watch: &mut Watch,
-        read: impl FnOnce(&Path, &mut BufReader<Watched>) -> Result<T, ArrayError>,
-    ) -> Result<T, CaseError> {
-        self.read(file, (key, name), FileUse::HeightMap, watch, read)
-    }
-
-    /// Reads the drawing with this name in the case, given by `key`, for blocks with an edge of `block` mm.
-    pub(super) fn read_drawing(
-        &self,
-        file: &CaseFile,
-        (key, name): (&str, &str),
-        block: f64,
-        watch: &mut Watch,
-    ) -> Result<Drawing, CaseError> {
-        self.read(file, (key, name), FileUse::Drawing, watch, |path, source| {
-            arrays::drawing(path, source, block)
-        })
-    }
-
     /// Reads one number per block from the file with this name, if the case names one.
     pub(super) fn read_field(
-        &self,
-        file: &CaseFile,
+        &mut self,
         key: &str,
         name: &Option<String>,
-        watch: &mut Watch,
     ) -> Result<Option<Vec<f64>>, CaseError> {
-        self.read_numbers(file, (key, name), watch, |path, source| {
-            arrays::field(path, source, &self.slab)
-        })
-    }
-
-    /// Reads the last state of a run from the file with this name, given by `key`.
-    pub(super) fn read_state(
-        &self,
-        file: &CaseFile,
-        (key, name): (&str, &str),
-        watch: &mut Watch,
-    ) -> Result<[Vec<f64>; 4], CaseError> {
-        self.read(file, (key, name), FileUse::State, watch, |path, source| {
-            arrays::state_npy(path, source, &self.slab)
-        })
+        let slab = self.slab.clone();
+        let read = |path: &Path, source: &mut BufReader<Watched>| arrays::field(path, source, &slab);
+        let name = name.as_ref();
+        name.map(|name| self.read(key, name, FileUse::Blocks, read))
+            .transpose()
     }
 
     /// Reads one number per block, of any sign, from the file with this name, if the case names one.
     pub(super) fn read_signed_field(
-        &self,
-        file: &CaseFile,
+        &mut self,
         key: &str,
         name: &Option<String>,
-        watch: &mut Watch,
     ) -> Result<Option<Vec<f64>>, CaseError> {
-        self.read_numbers(file, (key, name), watch, |path, source| {
-            arrays::signed_field(path, source, &self.slab)
-        })
-    }
-
-    fn read_numbers(
-        &self,
-        file: &CaseFile,
-        (key, name): (&str, &Option<String>),
-        watch: &mut Watch,
-        read: impl FnOnce(&Path, &mut BufReader<Watched>) -> Result<Vec<f64>, ArrayError>,
-    ) -> Result<Option<Vec<f64>>, CaseError> {
-        let read = |name: &String| self.read(file, (key, name), FileUse::Blocks, watch, read);
-        name.as_ref().map(read).transpose()
+        let slab = self.slab.clone();
+        let read = |path: &Path, source: &mut BufReader<Watched>| arrays::signed_field(path, source, &slab);
+        let name = name.as_ref();
+        name.map(|name| self.read(key, name, FileUse::Blocks, read))
+            .transpose()
     }
 }
 

@@ -1,15 +1,12 @@
 //! The model of a case: its blocks, surface, slider and drive, made in the order of their dependencies.
 
-use std::ops::Range;
-
 use slipfront::scales::damping;
 use slipfront::surface::share_load;
-use slipfront::{Communicator, Lattice, Loading, Model, State, Surface, SurfaceError};
+use slipfront::{Communicator, Loading, Model, State, Surface, SurfaceError};
 
 use super::coefficients::{coefficients, contact, sharing_distance};
 use super::derived::Derived;
 use super::drive::{attach, attached, drive};
-use super::files::Watch;
 use super::initial;
 use super::inputs::{Inputs, NamedFiles};
 use super::ranks::Ranks;
@@ -17,10 +14,10 @@ use super::shear;
 use super::slider::GivenBlocks;
 use super::textures;
 use super::topography::Topography;
-use crate::case_file::{self, CaseError, CaseFile};
+use crate::case_file::{self, CaseError};
 
 /// The texture as requested and as meshed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TextureReport {
     /// Requested A*, %; none if there is a mask, a polygon, a drawing or the depth of a height map, which
     /// have an area only after meshing.
@@ -41,26 +38,24 @@ pub struct TextureReport {
 /// and the state in which a run begins, unless it begins at rest. Refuses files that changed while they were
 /// read.
 pub(super) fn make(
-    file: &CaseFile,
     derived: &Derived,
-    (lattice, rows): (Lattice, Range<usize>),
-    (named, inputs): (&NamedFiles, &Inputs),
-    watch: &mut Watch,
+    named: &NamedFiles,
+    inputs: &mut Inputs,
     ranks: &Ranks,
 ) -> Result<(Model, TextureReport, Option<State>), CaseError> {
-    let (scales, groups) = (&derived.scales, &derived.groups);
-    let blocks = ranks.agree_on_rows(GivenBlocks::read(file, &lattice, inputs, watch))?;
+    let (file, scales, groups) = (inputs.file, &derived.scales, &derived.groups);
+    let (lattice, rows) = (*inputs.lattice, inputs.slab.rows.clone());
+    let blocks = ranks.agree_on_rows(GivenBlocks::read(inputs))?;
     let mut slider = blocks.slider(file, ranks.communicator)?;
-    let n_blocks = slider.n_blocks(&lattice);
-    let made = textures::mesh(file, scales, &lattice, n_blocks, inputs, watch).and_then(|meshed| {
-        let coefficients = coefficients(file, groups, &lattice, inputs, watch)?;
-        let contact = contact(file, scales, &lattice, inputs, watch)?;
-        let (shear, attached) = (shear::field(file, inputs, watch)?, attached(file, inputs, watch)?);
-        let state = initial::state(file, scales, (&lattice, &slider), inputs, watch)?;
+    let made = textures::mesh(inputs, slider.n_blocks(&lattice)).and_then(|meshed| {
+        let coefficients = coefficients(inputs, groups)?;
+        let contact = contact(inputs)?;
+        let shear = inputs.read_signed_field("load.shear_field", &file.load.shear_field)?;
+        let attached = attached(inputs)?;
+        let state = initial::state(inputs, &slider)?;
         Ok((meshed, coefficients, contact, shear, attached, state))
     });
-    let ((meshed, in_blocks), coefficients, mut contact, shear, attached, state) =
-        ranks.agree_on_rows(made)?;
+    let ((meshed, report), coefficients, mut contact, shear, attached, state) = ranks.agree_on_rows(made)?;
     ranks.agree(named.expect_unchanged(file))?;
     attach(&mut slider, file, &lattice, &rows, attached, ranks.communicator)?;
     if let Some(distance) = sharing_distance(file, scales, &lattice)? {
@@ -87,12 +82,10 @@ pub(super) fn make(
     )
     .map_err(|error| file.source.error("texture", error.to_string()))?;
     let texture = TextureReport {
-        asked_percent: in_blocks.asked_percent,
-        topographies: in_blocks.topographies,
-        notes: in_blocks.notes,
         meshed_percent: surface.texture_percent(),
         clipped: meshed.clipped,
         empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
+        ..report
     };
     let drive = drive(file, derived, (&lattice, &rows), &slider, ranks.communicator)?;
     let (damping, friction) = (damping(groups.omega_star), derived.friction);

@@ -17,7 +17,7 @@ use super::runnable::Case;
 use super::time_plan::auto_onset_end;
 use crate::case_file::{
     Attached, AttachedEdge, AutoOr, AutoOrStiffness, CaseError, CaseFile, DriveSpeed, DriveStiffness,
-    FrictionAlong, MAX_BLOCKS, Override, RunTime, StarUnit, star_unit,
+    FileUse, FrictionAlong, MAX_BLOCKS, NamedFile, Override, RunTime, StarUnit, star_unit,
 };
 use crate::quantity::Length;
 
@@ -148,22 +148,11 @@ impl Case {
                  blocks this would be another row",
             ));
         }
-        let fields = [
-            ("slider.stiffness_field", &file.slider.stiffness_field),
-            ("slider.density_field", &file.slider.density_field),
-            ("load.pressure_field", &file.load.pressure_field),
-            ("load.shear_field", &file.load.shear_field),
-            ("friction.mu_static_field", &file.friction.mu_static_field),
-            ("friction.mu_kinetic_field", &file.friction.mu_kinetic_field),
-        ];
-        let initial = file.initial.files().into_iter().flatten();
-        let initial = initial.chain([("state_file", &file.initial.state_file)]);
-        let initial = initial.map(|(key, name)| (format!("initial.{key}"), name));
-        let mut fields = fields
-            .map(|(key, name)| (key.to_owned(), name))
-            .into_iter()
-            .chain(initial);
-        if let Some((key, _)) = fields.find(|(_, field)| field.is_some()) {
+        let mut copy = file.clone();
+        let (mut named, _) = copy.files_mut();
+        if let Some(NamedFile { key, .. }) =
+            named.find(|named| matches!(named.holds, FileUse::Numbers | FileUse::State))
+        {
             return Err(file.source.error(
                 &key,
                 format!("`{key}` has one value per block of this case, so it does not apply to other blocks: leave it out, or give a slope or a length instead"),

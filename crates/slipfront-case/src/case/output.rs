@@ -58,7 +58,7 @@ const SERIES_ROWS: u64 = 20_000;
 
 impl Output {
     /// The output that a case file requests; an error when a spacing is shorter than a step.
-    pub(super) fn of(file: &CaseFile, time_plan: &TimePlan) -> Result<Self, CaseError> {
+    pub(super) fn new(file: &CaseFile, time_plan: &TimePlan) -> Result<Self, CaseError> {
         let dt_star = time_plan.dt_star;
         let spacing = |key: &str, time: f64| -> Result<u64, CaseError> {
             let steps = (time / dt_star).round();

@@ -11,9 +11,9 @@ use slipfront::{
 use super::budget::Budget;
 use super::coefficients::correlated_field;
 use super::derived::Derived;
+use super::dimensionless_groups::Groups;
 use super::drive::{program, refuse_endless_slip, refuse_large_angles};
 use super::files::{Files, FilesInMemory, Watch};
-use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
 use super::model::{self, TextureReport};
 use super::output::Output;
@@ -23,7 +23,7 @@ use super::textures;
 use super::time_plan::{TimePlan, auto_onset_end, largest_load};
 use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
-use crate::same::expect_same;
+use crate::same_on_ranks::expect_same;
 
 /// A case that is ready to run, and valid by construction.
 #[derive(Clone, Debug)]
@@ -75,7 +75,7 @@ pub struct Expected {
 }
 
 impl Expected {
-    fn of(file: &CaseFile, scales: &Scales, model: &Model, ranks: &dyn Communicator) -> Self {
+    fn new(file: &CaseFile, scales: &Scales, model: &Model, ranks: &dyn Communicator) -> Self {
         Self {
             steady_level: model.steady_level(ranks),
             steady_drag: model.steady_drag(ranks),
@@ -83,7 +83,7 @@ impl Expected {
             onset_star: model.onset_estimate(largest_load(file, model)),
             critical_size: model.critical_size(ranks),
             onset_end_star: auto_onset_end(file, scales, model),
-            at_once: AtOnce::of(model, ranks),
+            at_once: AtOnce::count(model, ranks),
         }
     }
 }
@@ -117,7 +117,7 @@ impl Case {
             .map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.parent().unwrap_or(Path::new(""));
         let files = Files { folder, in_memory };
-        Self::to_run_with(file, &name, files, watch, ranks)
+        Self::to_run(file, &name, files, watch, ranks)
     }
 
     /// Makes a case from text, as [`load`](Self::load) does, with names of files relative to `folder`.
@@ -131,20 +131,10 @@ impl Case {
         Self::to_run(file, name, folder.as_ref(), &mut |_| true, Ranks::ALONE)
     }
 
-    /// Makes a case for a run from a parsed case file, with names of files relative to `folder`. All `ranks`
-    /// make the case at once: each makes the surface of its own rows, and knows the rest of the case. If one
-    /// of them fails, or has a different case or different files, all return the same error.
-    pub fn to_run(
-        file: CaseFile,
-        name: &str,
-        folder: &Path,
-        watch: &mut Watch,
-        ranks: Ranks,
-    ) -> Result<Self, CaseError> {
-        Self::to_run_with(file, name, folder.into(), watch, ranks)
-    }
-
-    /// Makes a case as [`to_run`](Self::to_run) does, with files that may be in memory.
+    /// Makes a case for a run from a parsed case file; `files` is the folder of its input files, or holds
+    /// them in memory. All `ranks` make the case at once: each makes the surface of its own rows, and knows
+    /// the rest of the case. If one of them fails, or has a different case or different files, all return the
+    /// same error.
     ///
     /// ```
     /// use std::path::Path;
@@ -156,18 +146,18 @@ impl Case {
     /// let in_memory = FilesInMemory::from([("drawn.npy".to_owned(), drawn.into())]);
     /// let files = Files { folder: Path::new(""), in_memory: Some(&in_memory) };
     /// let file = CaseFile::parse(text, "case", &[])?;
-    /// let case = Case::to_run_with(file, "case", files, &mut |_| true, Ranks::ALONE)?;
+    /// let case = Case::to_run(file, "case", files, &mut |_| true, Ranks::ALONE)?;
     /// assert_eq!(case.model.surface.textured, [true, false, false, false]);
     /// # Ok::<(), slipfront_case::case_file::CaseError>(())
     /// ```
-    pub fn to_run_with(
+    pub fn to_run<'f>(
         file: CaseFile,
         name: &str,
-        files: Files,
+        files: impl Into<Files<'f>>,
         watch: &mut Watch,
         ranks: Ranks,
     ) -> Result<Self, CaseError> {
-        Self::make(file, name, files, true, watch, ranks)
+        Self::make(file, name, files.into(), true, watch, ranks)
     }
 
     /// Makes a case from a case file on all `ranks` at once; `files` is the folder of its input files, or
@@ -197,28 +187,27 @@ impl Case {
         let lattice = Lattice::with_edges(nx, ny, file.slider.edges);
         let rows = lattice.rows_of(ranks.communicator);
         // All ranks check the memory that they share before anything is allocated.
-        let derived = Derived::of(&file, &lattice, &rows, &ranks, to_run)
+        let derived = Derived::new(&file, &lattice, &rows, &ranks, to_run)
             .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, files)?)));
         let (derived, named) = ranks.agree(derived)?;
-        let inputs = Inputs {
-            files: named.read(&mut file, &lattice, watch, &ranks)?,
-            slab: Slab {
-                nx,
-                ny,
-                rows: rows.clone(),
-            },
+        let files = named.read(&mut file, &lattice, watch, &ranks)?;
+        let mut inputs = Inputs {
+            file: &file,
+            scales: &derived.scales,
+            lattice: &lattice,
+            files: &files,
+            slab: Slab { nx, ny, rows },
+            watch,
         };
-
-        let (mut model, texture, initial) =
-            model::make(&file, &derived, (lattice, rows), (&named, &inputs), watch, &ranks)?;
+        let (mut model, texture, initial) = model::make(&derived, &named, &mut inputs, &ranks)?;
         let Derived {
             scales,
             groups,
             budget,
             ..
         } = derived;
-        let planned = TimePlan::of(&file, &scales, &groups, &mut model, ranks.communicator)
-            .and_then(|plan| Ok((plan, Output::of(&file, &plan)?)));
+        let planned = TimePlan::new(&file, &scales, &groups, &mut model, ranks.communicator)
+            .and_then(|plan| Ok((plan, Output::new(&file, &plan)?)));
         let (time_plan, output) = ranks.agree(planned)?;
         let model = model
             .with_program(program(&file, time_plan.dt_star)?)
@@ -227,11 +216,11 @@ impl Case {
         refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
         Ok(Self {
             name: name.to_owned(),
-            budget: budget.with_results(&file, &model, &output, time_plan.last_step, &inputs.files),
-            inputs: inputs.files,
+            budget: budget.with_results(&file, &model, &output, time_plan.last_step, &files),
+            inputs: files,
             scales,
             groups,
-            expected: Expected::of(&file, &scales, &model, ranks.communicator),
+            expected: Expected::new(&file, &scales, &model, ranks.communicator),
             model: Arc::new(model),
             initial: initial.map(Arc::new),
             texture,
@@ -287,16 +276,16 @@ impl Case {
     /// When a mask can no longer be read.
     pub fn textures_in_blocks(&self) -> Result<Vec<Texture>, CaseError> {
         let lattice = &self.model.lattice;
-        let inputs = Inputs {
-            files: self.inputs.clone(),
+        let mut inputs = Inputs {
+            file: &self.file,
+            scales: &self.scales,
+            lattice,
+            files: &self.inputs,
             slab: Slab::whole(lattice.nx, lattice.ny),
+            watch: &mut |_| true,
         };
-        let n_blocks = self.model.n_blocks();
-        let made =
-            textures::shapes_in_blocks(&self.file, &self.scales, lattice, n_blocks, &inputs, &mut |_| {
-                true
-            });
-        made.map(|in_blocks| in_blocks.textures)
+        let (textures, _) = textures::shapes_in_blocks(&mut inputs, self.model.n_blocks())?;
+        Ok(textures)
     }
 
     /// The field that gives the random coefficients as means over blocks; none if every block draws its own.

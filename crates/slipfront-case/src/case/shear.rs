@@ -3,19 +3,8 @@
 use slipfront::communicator::lowest_rank;
 use slipfront::{Communicator, DeadLoad, Model, Scales};
 
-use super::files::Watch;
-use super::inputs::Inputs;
 use crate::case_file::{CaseError, CaseFile, FrictionAlong};
 use slipfront_base::number_format::{count, four_digits};
-
-/// The local shear load relative to that of the case, for the blocks of these rows, if a file gives it.
-pub(super) fn field(
-    file: &CaseFile,
-    inputs: &Inputs,
-    watch: &mut Watch,
-) -> Result<Option<Vec<f64>>, CaseError> {
-    inputs.read_signed_field(file, "load.shear_field", &file.load.shear_field, watch)
-}
 
 /// The dead load of a case on the blocks of a model, along its drive. For an upright sheet, it acts on the
 /// lowest row. All ranks call this at once.
@@ -76,7 +65,7 @@ pub struct AtOnce {
 
 impl AtOnce {
     /// Counts the blocks of all ranks, which call this at once.
-    pub(super) fn of(model: &Model, ranks: &dyn Communicator) -> Self {
+    pub(super) fn count(model: &Model, ranks: &dyn Communicator) -> Self {
         let is_pulled = model.dead_load().acts() && model.friction.has_thresholds();
         let slips = |b: &usize| !model.surface.textured[*b] && model.slips_at_once(*b);
         let blocks = if is_pulled { model.surface.n_blocks() } else { 0 };

@@ -1,26 +1,19 @@
 //! Stiffness, density and outline of the slider, from the case file or its input files.
 
-use slipfront::{Communicator, Lattice, Outline, Slider};
+use slipfront::{Communicator, Outline, Slider};
 
-use super::files::Watch;
 use super::inputs::Inputs;
 use crate::arrays::Slab;
 use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD, EdgeSprings, Grade};
 use crate::case_file::{MAX_RELATIVE, MIN_RELATIVE};
 
 /// Marks the blocks of some rows that exist; none if the slider fills its lattice.
-pub(super) fn outline(
-    file: &CaseFile,
-    lattice: &Lattice,
-    inputs: &Inputs,
-    slab: &Slab,
-    watch: &mut Watch,
-) -> Result<Option<Vec<bool>>, CaseError> {
-    let exists = match (file.slider.outline, &file.slider.outline_file) {
-        (case_file::Outline::Disc, _) => Outline::disc(lattice, slab.rows.clone()),
+pub(super) fn outline(inputs: &mut Inputs, slab: &Slab) -> Result<Option<Vec<bool>>, CaseError> {
+    let slider = &inputs.file.slider;
+    let exists = match (slider.outline, &slider.outline_file) {
+        (case_file::Outline::Disc, _) => Outline::disc(inputs.lattice, slab.rows.clone()),
         (case_file::Outline::Mask, Some(name)) => {
-            let key = "slider.outline_file";
-            inputs.read_mask(file, key, name, DEFAULT_THRESHOLD, slab, watch)?
+            inputs.read_mask("slider.outline_file", name, DEFAULT_THRESHOLD, slab)?
         }
         _ => return Ok(None),
     };
@@ -36,21 +29,17 @@ pub(super) struct GivenBlocks {
 
 impl GivenBlocks {
     /// Reads the files, and refuses properties outside their bounds.
-    pub(super) fn read(
-        file: &CaseFile,
-        lattice: &Lattice,
-        inputs: &Inputs,
-        watch: &mut Watch,
-    ) -> Result<Self, CaseError> {
+    pub(super) fn read(inputs: &mut Inputs) -> Result<Self, CaseError> {
+        let (file, lattice, slab) = (inputs.file, inputs.lattice, inputs.slab.clone());
         let slider = &file.slider;
-        let rows = || inputs.slab.rows.clone();
-        let exists = outline(file, lattice, inputs, &inputs.slab, watch)?;
+        let exists = outline(inputs, &slab)?;
         let mut property = |field: &str, name: &Option<String>, grade: &Option<Grade>| {
             if let Some(Grade { along, from, to }) = *grade {
-                return Ok(Some(Slider::grade(lattice, rows(), along as usize, [from, to])));
+                let rows = slab.rows.clone();
+                return Ok(Some(Slider::grade(lattice, rows, along as usize, [from, to])));
             }
             let key = format!("slider.{field}");
-            let values = inputs.read_field(file, &key, name, watch)?;
+            let values = inputs.read_field(&key, name)?;
             let bounds = MIN_RELATIVE..=MAX_RELATIVE;
             let mut of_blocks = values.iter().flatten().enumerate();
             let is_wrong = |(b, value): &(usize, &f64)| {
@@ -58,7 +47,7 @@ impl GivenBlocks {
                 exists && !bounds.contains(value)
             };
             if let Some((b, value)) = of_blocks.find(is_wrong) {
-                let (i, j) = lattice.column_row(b + inputs.slab.rows.start * lattice.nx);
+                let (i, j) = lattice.column_row(b + slab.rows.start * lattice.nx);
                 let sentence = format!(
                     "block ({i}, {j}) has {value:?}: it must be at least {MIN_RELATIVE:e} and at most {MAX_RELATIVE:e}; it is relative, \
                      so that 1 changes nothing"

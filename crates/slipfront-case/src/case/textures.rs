@@ -7,110 +7,98 @@ use std::sync::Arc;
 use slipfront::surface::Tile;
 use slipfront::{Lattice, Scales, surface};
 
-use super::files::Watch;
 use super::inputs::Inputs;
+use super::model::TextureReport;
 use super::slider::outline;
-use super::topography::{Ground, Topography};
-use crate::arrays::Slab;
+use super::topography::Ground;
+use crate::arrays::{self, Slab};
 use crate::case_file::{
-    Arrangement, Blocks, CaseError, CaseFile, Count, Inside, MAX_COUNT, Mask, Pattern, Pitch, Shape, Texture,
+    Arrangement, Blocks, CaseError, CaseFile, Count, FileUse, MAX_COUNT, Mask, Pattern, Pitch, Shape,
+    ShapeSource, Texture,
 };
 use crate::quantity::Length;
-
-/// The textures of a case in blocks.
-pub(super) struct InBlocks {
-    /// The textures, in the order of the file.
-    pub(super) textures: Vec<surface::Texture>,
-    /// Requested area of all textures, % of the area of the blocks that exist (see
-    /// [`TextureReport`](super::runnable::TextureReport)).
-    pub(super) asked_percent: Option<f64>,
-    /// The height maps among the textures.
-    pub(super) topographies: Vec<Topography>,
-    /// Notes about files of drawings.
-    pub(super) notes: Vec<String>,
-}
 
 /// The textured blocks of the rows of this rank, with the textures; masks and height maps are read.
 /// `n_blocks` blocks exist.
 pub(super) fn mesh(
-    file: &CaseFile,
-    scales: &Scales,
-    lattice: &Lattice,
+    inputs: &mut Inputs,
     n_blocks: usize,
-    inputs: &Inputs,
-    watch: &mut Watch,
-) -> Result<(surface::Meshed, InBlocks), CaseError> {
-    let in_blocks = shapes_in_blocks(file, scales, lattice, n_blocks, inputs, watch)?;
+) -> Result<(surface::Meshed, TextureReport), CaseError> {
+    let (textures, report) = shapes_in_blocks(inputs, n_blocks)?;
+    let watch = &mut *inputs.watch;
     let mut watch = |share| watch(share).then_some(()).ok_or(CaseError::Stopped);
-    let meshed = surface::mesh_watched(lattice, &inputs.slab.rows, &in_blocks.textures, &mut watch)?;
-    Ok((meshed, in_blocks))
+    let (lattice, rows) = (inputs.lattice, &inputs.slab.rows);
+    let meshed = surface::mesh_watched(lattice, rows, &textures, &mut watch)?;
+    Ok((meshed, report))
 }
 
-/// The textures in blocks.
+/// The textures in blocks, in the order of the file, and what their report says before they are meshed.
 pub(super) fn shapes_in_blocks(
-    file: &CaseFile,
-    scales: &Scales,
-    lattice: &Lattice,
+    inputs: &mut Inputs,
     n_blocks: usize,
-    inputs: &Inputs,
-    watch: &mut Watch,
-) -> Result<InBlocks, CaseError> {
+) -> Result<(Vec<surface::Texture>, TextureReport), CaseError> {
+    let (file, scales, lattice) = (inputs.file, inputs.scales, inputs.lattice);
     let mut textures = Vec::new();
-    let mut asked = Some(0.0);
-    let mut topographies = Vec::new();
-    let mut notes = Vec::new();
+    let mut report = TextureReport {
+        asked_percent: Some(0.0),
+        ..TextureReport::default()
+    };
     let mut masks = Masks::default();
     let (mut steps, most_steps) = (0.0, STEPS + STEPS_PER_BLOCK * (lattice.nx * lattice.ny) as f64);
     // A height map covers all rows, so a rank must know which blocks exist in all of them.
     let exists = match count_height_maps(file) {
         0 => None,
-        _ => outline(file, lattice, inputs, &Slab::whole(lattice.nx, lattice.ny), watch)?,
+        _ => outline(inputs, &Slab::whole(lattice.nx, lattice.ny))?,
     };
     for (index, texture) in file.texture.iter().enumerate() {
         let key = format!("texture.{index}");
+        let refuse = |sentence: String| file.source.error(&key, sentence);
         let arrays = arrays(&texture.pattern, scales, lattice)
             .map_err(|(name, sentence)| file.source.error(&format!("{key}.{name}"), sentence))?;
-        let (shape, percent) = match texture.shape.form() {
-            Inside::Outline(outline) => outline.in_blocks(&Blocks {
-                scales,
-                lattice,
-                n_blocks,
-                arrays: &arrays,
-            }),
-            Inside::Mask(mask) => {
-                let size = cell(&arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
-                let tile = masks.read(file, index, mask, size, inputs, watch)?;
+        let blocks = Blocks {
+            scales,
+            lattice,
+            n_blocks,
+            arrays: &arrays,
+        };
+        let (shape, percent) = match texture.shape.source() {
+            ShapeSource::Outline(outline) => outline.in_blocks(&blocks),
+            ShapeSource::Mask(mask) => {
+                let size = cell(&arrays, lattice).map_err(refuse)?;
+                let tile = masks.read(inputs, index, mask, size)?;
                 (surface::Shape::Tile(tile), None)
             }
-            Inside::HeightMap(map) => {
-                let size = cell(&arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
+            ShapeSource::HeightMap(map) => {
+                let size = cell(&arrays, lattice).map_err(refuse)?;
                 let ground = Ground {
-                    lattice,
+                    blocks: &blocks,
                     exists: exists.as_deref(),
-                    n_blocks,
                     size,
-                    arrays: &arrays,
                 };
-                let (tile, topography, percent) = ground.read(file, index, map, inputs, watch)?;
-                topographies.push(topography);
+                let (tile, topography, percent) = ground.read(inputs, index, map)?;
+                report.topographies.push(topography);
                 (surface::Shape::Tile(tile), percent)
             }
-            Inside::Drawing(drawing) => {
+            ShapeSource::Drawing(drawing) => {
                 let key = format!("{key}.file");
                 let block = scales.block_size * 1e3;
-                let read = inputs.read_drawing(file, (&key, &drawing.file), block, watch)?;
-                notes.extend(read.notes.iter().map(|note| format!("{}: {note}", drawing.file)));
+                let read = inputs.read(&key, &drawing.file, FileUse::Drawing, |path, source| {
+                    arrays::drawing(path, source, block)
+                })?;
+                let notes = read.notes.iter();
+                report
+                    .notes
+                    .extend(notes.map(|note| format!("{}: {note}", drawing.file)));
                 (surface::Shape::Drawing(read.parts.into()), None)
             }
         };
-        within_reach(&shape, &arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
+        within_reach(&shape, &arrays, lattice).map_err(refuse)?;
         steps += meshing_steps(&shape, &arrays);
         if steps > most_steps {
-            let sentence = format!(
+            return Err(refuse(format!(
                 "with this texture, outlines cross rows of blocks and masks cover blocks {steps:.1e} times, more than \
                  {most_steps:.1e}: reduce the number of copies, their size or their corners"
-            );
-            return Err(file.source.error(&key, sentence));
+            )));
         }
         let inverted = texture.pattern.invert;
         textures.push(surface::Texture {
@@ -118,21 +106,17 @@ pub(super) fn shapes_in_blocks(
             arrays,
             inverted,
         });
-        let percent = percent.map(|percent| {
+        let covered = |percent: f64| {
             if inverted {
                 (100.0 - percent).max(0.0)
             } else {
                 percent
             }
-        });
-        asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
+        };
+        let asked = report.asked_percent.zip(percent);
+        report.asked_percent = asked.map(|(sum, percent)| sum + covered(percent));
     }
-    Ok(InBlocks {
-        textures,
-        asked_percent: asked,
-        topographies,
-        notes,
-    })
+    Ok((textures, report))
 }
 
 /// The textures with known outlines, in blocks: all but masks and height maps.
@@ -284,12 +268,10 @@ impl<'a> Masks<'a> {
     /// The mask of a texture, with this size in blocks.
     fn read(
         &mut self,
-        file: &CaseFile,
+        inputs: &mut Inputs,
         index: usize,
         mask: &'a Mask,
         size: [usize; 2],
-        inputs: &Inputs,
-        watch: &mut Watch,
     ) -> Result<Tile, CaseError> {
         let entry = match self.0.entry((&mask.file, mask.threshold.to_bits(), size)) {
             Entry::Occupied(known) => return Ok(known.get().clone()),
@@ -303,7 +285,7 @@ impl<'a> Masks<'a> {
         } else {
             Slab::whole(nx, ny)
         };
-        let blocks = inputs.read_mask(file, &key, &mask.file, mask.threshold, &slab, watch)?;
+        let blocks = inputs.read_mask(&key, &mask.file, mask.threshold, &slab)?;
         let tile = Tile {
             size,
             rows: slab.rows,

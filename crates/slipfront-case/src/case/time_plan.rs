@@ -5,7 +5,7 @@ use slipfront::lattice::K_DRIVE;
 use slipfront::observe::KineticStart;
 use slipfront::{Increments, Loading, Model, ONSET_PATH, Scales, Stop, StopReason};
 
-use super::groups::{Groups, MAX_V_STAR};
+use super::dimensionless_groups::{Groups, MAX_V_STAR};
 use crate::case_file::{
     self, Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, TimeStep,
 };
@@ -48,7 +48,7 @@ impl TimePlan {
     /// The time plan of a case, which also sets the speed of a drive that is held for a bulk body; an error
     /// when the step is unstable, the run too long, or its kinetic window or a snapshot after its end. All
     /// ranks must call this together.
-    pub(super) fn of(
+    pub(super) fn new(
         file: &CaseFile,
         scales: &Scales,
         groups: &Groups,

@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use slipfront::surface::{Array, Tile, n_copies};
+use slipfront::surface::{Tile, n_copies};
 use slipfront::{Edges, Lattice};
 
-use super::files::Watch;
 use super::inputs::Inputs;
 use crate::arrays::{self, HeightMapUnits, Preparation, Room, Roughness, Slab};
-use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Level, Missing, Pitch};
+use crate::case_file::{Bearing, Blocks, CaseError, FileUse, HeightMap, Level, Missing, Pitch};
 use crate::quantity::Length;
 use crate::table::TableOptions;
 
@@ -35,15 +34,11 @@ pub struct Topography {
 
 /// Blocks that a height map covers.
 pub(super) struct Ground<'a> {
-    pub(super) lattice: &'a Lattice,
+    pub(super) blocks: &'a Blocks<'a>,
     /// Marks of the existing blocks of the whole lattice; none without an outline, because then all exist.
     pub(super) exists: Option<&'a [bool]>,
-    /// Number of blocks that exist.
-    pub(super) n_blocks: usize,
     /// Blocks of the map along x and along y.
     pub(super) size: [usize; 2],
-    /// The pattern of its copies.
-    pub(super) arrays: &'a [Array],
 }
 
 impl Ground<'_> {
@@ -51,11 +46,9 @@ impl Ground<'_> {
     /// area of the blocks that exist.
     pub(super) fn read(
         &self,
-        file: &CaseFile,
+        inputs: &mut Inputs,
         index: usize,
         map: &HeightMap,
-        inputs: &Inputs,
-        watch: &mut Watch,
     ) -> Result<(Tile, Topography, Option<f64>), CaseError> {
         let units = HeightMapUnits {
             height: map.height_unit.as_ref().map(Length::si),
@@ -66,7 +59,7 @@ impl Ground<'_> {
         };
         let room = Room {
             blocks: self.size,
-            is_place: !self.arrays.is_empty(),
+            is_place: !self.blocks.arrays.is_empty(),
         };
         let preparation = Preparation {
             missing: map.missing.map(Missing::value),
@@ -74,28 +67,28 @@ impl Ground<'_> {
             table: TableOptions::stated(None, map.decimal, map.separator),
         };
         let key = format!("texture.{index}.file");
-        let read = inputs.read_height_map(file, &key, &map.file, watch, |path, source| {
+        let read = inputs.read(&key, &map.file, FileUse::HeightMap, |path, source| {
             arrays::height_map(path, source, &units, &preparation, &room)
         })?;
-        let mut standing = self.standing(&read.blocks);
+        let mut existing = self.heights_of_existing_blocks(&read.blocks);
         let asked = match map.bearing {
             Bearing::Percent(percent) => {
                 let laid = match self.exists {
-                    Some(_) => standing.len(),
-                    None => n_copies(self.arrays) * standing.len(),
+                    Some(_) => existing.len(),
+                    None => n_copies(self.blocks.arrays) * existing.len(),
                 };
-                Some((100.0 - percent) * laid as f64 / self.n_blocks as f64)
+                Some((100.0 - percent) * laid as f64 / self.blocks.n_blocks as f64)
             }
             Bearing::Depth(_) => None,
         };
-        let contact_height = contact_height(&mut standing, map).ok_or_else(|| {
+        let contact_height = contact_height(&mut existing, map).ok_or_else(|| {
             let sentence =
                 "its pattern covers no block of the slider: change its `pitch` or `array`, or the outline";
-            file.source.error(&key, sentence)
+            inputs.file.source.error(&key, sentence)
         })?;
-        let touching = standing.iter().filter(|height| **height >= contact_height);
+        let touching = existing.iter().filter(|height| **height >= contact_height);
         let mut notes = read.notes;
-        if touching.take(2).count() == 1 && standing.len() > 1 {
+        if touching.take(2).count() == 1 && existing.len() > 1 {
             notes.push("only its highest block is in contact and carries the whole load".to_owned());
         }
         // If a map covers the slider, a rank needs only its own rows.
@@ -125,11 +118,11 @@ impl Ground<'_> {
     }
 
     /// Heights of the blocks that exist; with an outline, for every copy.
-    fn standing(&self, heights: &[f64]) -> Vec<f64> {
+    fn heights_of_existing_blocks(&self, heights: &[f64]) -> Vec<f64> {
         let Some(exists) = self.exists else {
             return heights.to_vec();
         };
-        let Lattice { nx, ny, edges } = *self.lattice;
+        let Lattice { nx, ny, edges } = *self.blocks.lattice;
         // A lattice coordinate. On a periodic axis, coordinates continue beyond the edges.
         let within = |at: isize, axis: usize| -> Option<usize> {
             let size = [nx, ny][axis] as isize;
@@ -138,21 +131,21 @@ impl Ground<'_> {
                 Edges::Free => (0..size).contains(&at).then_some(at as usize),
             }
         };
-        let mut standing = Vec::new();
-        for [left, bottom] in Tile::starts(self.lattice, self.size, self.arrays) {
+        let mut existing = Vec::new();
+        for [left, bottom] in Tile::starts(self.blocks.lattice, self.size, self.blocks.arrays) {
             for (row, heights) in (bottom..).zip(heights.chunks_exact(self.size[0])) {
                 let Some(row) = within(row, 1) else { continue };
                 let exists = &exists[row * nx..][..nx];
                 let columns = (left..).zip(heights);
                 let stands = |column: isize| within(column, 0).is_some_and(|column| exists[column]);
-                standing.extend(
+                existing.extend(
                     columns
                         .filter(|(column, _)| stands(*column))
                         .map(|(_, height)| *height),
                 );
             }
         }
-        standing
+        existing
     }
 }
 

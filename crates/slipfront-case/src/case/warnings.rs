@@ -230,7 +230,7 @@ impl Case {
             warnings.extend(notes.map(|note| format!("{}: {note}", topography.file)));
         }
         for (texture, number) in self.file.texture.iter().zip(1..) {
-            warnings.extend(self.seam(&texture.pattern, number));
+            warnings.extend(self.broken_pattern_warning(&texture.pattern, number));
         }
         let meshed = report.meshed_percent;
         if let Some(asked) = report.asked_percent
@@ -300,7 +300,7 @@ impl Case {
     }
 
     /// A warning if a pattern that fills the slider is not continuous across a periodic edge.
-    fn seam(&self, pattern: &Pattern, number: usize) -> Option<String> {
+    fn broken_pattern_warning(&self, pattern: &Pattern, number: usize) -> Option<String> {
         let lattice = &self.model.lattice;
         let arrays = arrays(pattern, &self.scales, lattice).ok()?;
         let (array, (_, keys)) = arrays

@@ -4,11 +4,20 @@ use std::ops::Bound::{Excluded, Included};
 use std::ops::RangeBounds;
 use std::path::Path;
 
+use slipfront::observe::Field;
+use slipfront::surface::Orientation;
+use slipfront::{Edges, Face, StopReason};
+
 use super::error::CaseError;
+use super::friction::{AfterBreak, ContactModel, Law};
 use super::key::{Bounds, Key, KeyKind};
+use super::load::Along;
+use super::shapes::{Level, Missing};
 use super::source::Source;
 use super::values::AutoOr;
+use super::words::{Arrangement, AttachedEdge, Body, EdgeSprings, FrictionAlong, Loading, Motion, Outline};
 use crate::quantity::{self, Quantity};
+use crate::table::{DecimalSign, FieldSeparator};
 use slipfront_base::number_format::exact;
 
 /// Checks of one table, with the names of keys within that table.
@@ -25,8 +34,20 @@ impl<'a> Check<'a> {
         Self { source, keys, path }
     }
 
+    /// Checks of a table within this one, at `path`.
+    pub(super) fn within<'p>(&self, path: &'p str, keys: &'static [Key]) -> Check<'p>
+    where
+        'a: 'p,
+    {
+        Check {
+            source: self.source,
+            keys,
+            path,
+        }
+    }
+
     /// The key as the user writes it.
-    fn path_of(&self, key: &str) -> String {
+    pub(super) fn path_of(&self, key: &str) -> String {
         format!("{}.{key}", self.path)
     }
 
@@ -44,14 +65,9 @@ impl<'a> Check<'a> {
     /// Refuses a value that its key does not accept.
     pub(super) fn value(&self, key: &str, value: &dyn Checked) -> Result<(), CaseError> {
         match self.keys.iter().find(|found| found.name == key) {
-            Some(found) => self.value_of(&found.kind, key, value),
+            Some(found) => value.check(self, key, &found.kind),
             None => Ok(()),
         }
-    }
-
-    /// Refuses a value that is not of this kind.
-    pub(super) fn value_of(&self, kind: &KeyKind, key: &str, value: &dyn Checked) -> Result<(), CaseError> {
-        self.hold(key, value.complaint(kind))
     }
 
     /// Refuses a number outside bounds that depend on other values, or NaN.
@@ -80,8 +96,23 @@ pub(super) trait Checked {
     fn complaint(&self, _kind: &KeyKind) -> Option<String> {
         None
     }
+
+    /// Refuses the value of `key` unless it is of this kind.
+    fn check(&self, check: &Check, key: &str, kind: &KeyKind) -> Result<(), CaseError> {
+        check.hold(key, self.complaint(kind))
+    }
 }
 
+/// Declares that values of some types are right once they have been read.
+macro_rules! right_once_read {
+    ($($type:ty)+) => { $(impl Checked for $type {})+ };
+}
+
+right_once_read! {
+    bool AttachedEdge Arrangement Body EdgeSprings FrictionAlong Loading Motion Outline Along Law ContactModel
+    AfterBreak Level Missing DecimalSign FieldSeparator Face [Edges; 2] Orientation StopReason
+    Vec<Field>
+}
 impl Checked for f64 {
     fn complaint(&self, kind: &KeyKind) -> Option<String> {
         let KeyKind::Number { bounds, remark, .. } = kind else {
@@ -128,6 +159,12 @@ impl Checked for u64 {
     }
 }
 
+impl Checked for u32 {
+    fn complaint(&self, kind: &KeyKind) -> Option<String> {
+        u64::from(*self).complaint(kind)
+    }
+}
+
 impl Checked for [u32; 2] {
     fn complaint(&self, kind: &KeyKind) -> Option<String> {
         let KeyKind::Whole { least, most, .. } = kind else {
@@ -156,11 +193,11 @@ impl Checked for String {
 }
 
 impl<V: Checked> Checked for Option<V> {
-    fn complaint(&self, kind: &KeyKind) -> Option<String> {
-        self.as_ref()?.complaint(kind)
+    fn check(&self, check: &Check, key: &str, kind: &KeyKind) -> Result<(), CaseError> {
+        self.as_ref()
+            .map_or(Ok(()), |value| value.check(check, key, kind))
     }
 }
-
 fn is_within(bounds: Bounds, value: f64) -> bool {
     bounds.contains(&value) && value.is_finite()
 }

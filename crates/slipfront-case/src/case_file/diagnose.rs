@@ -292,6 +292,7 @@ fn in_plain_words(expected: &str) -> String {
     match plain {
         Some((_, plain)) => (*plain).to_owned(),
         None if expected.starts_with("struct ") => "a table of keys".to_owned(),
+        None if expected.starts_with("enum ") => "a word in quotes".to_owned(),
         None => expected.to_owned(),
     }
 }

@@ -1,6 +1,6 @@
 //! The table `[drive]`: the pull on the slider.
 
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use slipfront::{Edge, Edges};
 
 use super::check::{Check, Checked};
@@ -8,9 +8,8 @@ use super::error::CaseError;
 use super::key::{
     DEGREES, Key, KeyKind, STIFFNESS_PER_AREA, StarUnit, TIME_STAR, above, key, number, quantity, within,
 };
-use super::probe::names_of;
+use super::serde_names::names_of;
 use super::slider::Slider;
-use super::values::word;
 use super::words::{AttachedEdge, Body, Loading, Motion, Outline};
 use crate::key_rows;
 use crate::quantity::{QuantityError, Speed, Stiffness, StiffnessPerArea};
@@ -26,19 +25,19 @@ key_rows! {
                 /// Speed of the drive.
                 v_star: f64 => VStar = key("0.03", number(above(0.0, 10.0), "the paper's runs have 0.01 to 0.2"))
                     .star(StarUnit::Speed)
-                    .or("speed").or("program").paper("V* = sqrt(E rho) V h/(P mu_s l), Eq. 11 with h = l")
+                    .paper("V* = sqrt(E rho) V h/(P mu_s l), Eq. 11 with h = l")
                     .title("drive speed", "V*", "")
                     .further_bounds("; V* not below 1e-9"),
                 /// Speed of the drive with its unit, instead of `v_star`.
-                speed: Speed => Speed = key("", quantity("m/s", within(1e-18, 1e6))).or("v_star")
-                    .or("program").paper("V")
+                speed: Speed => Speed = key("", quantity("m/s", within(1e-18, 1e6)))
+                    .paper("V")
                     .title("drive speed", "V", "m/s"),
                 /// Sequence of speeds, instead of `v_star`: each until its t*, rounded to a step, the last to
                 /// the end of the run. At least one speed must be positive. The largest absolute value is
                 /// used as V*.
                 program: Vec<SpeedSegment> => Program = key("",
                     KeyKind::Table("[{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]", SpeedSegment::KEYS))
-                    .or("v_star").or("speed").further_bounds(", rising"),
+                    .further_bounds(", rising"),
             }
         ]
         /// Direction of the drive, degrees from x towards y.
@@ -46,22 +45,18 @@ key_rows! {
             .title("direction of the drive", "\u{3b8}", "\u{b0}"),
         /// Motion of the drive: along the direction, or counterclockwise rotation about the centroid of all
         /// blocks, with the speed at the largest radius.
-        #[serde(deserialize_with = "word")]
         pub motion: Motion = key("\"translation\"", KeyKind::Words(names_of::<Motion>)),
         /// Loading of the slider: the drive moves all the time, or stands while a block in contact slides.
-        #[serde(deserialize_with = "word")]
         pub loading: Loading = key("\"constant\"", KeyKind::Words(names_of::<Loading>))
             .note("See [slow loading](#slow-loading)."),
         [
             /// Blocks that have a drive spring: `attach` or `attach_file`.
             pub attached: Attached or "the drive needs `attach` or `attach_file`" {
                 /// Blocks that have a drive spring: all, or the blocks of a free edge.
-                #[serde(default, deserialize_with = "some_word")]
-                attach: AttachedEdge => At = key("\"all\"", KeyKind::Words(names_of::<AttachedEdge>))
-                    .or("attach_file"),
+                attach: AttachedEdge => At = key("\"all\"", KeyKind::Words(names_of::<AttachedEdge>)),
                 /// An image or array of the blocks that have a drive spring, in place of `attach`: dark
                 /// pixels, or ones.
-                attach_file: String => File = key("", KeyKind::File(&["png", "npy"])).or("attach")
+                attach_file: String => File = key("", KeyKind::File(&["png", "npy"]))
                     .note("It is stretched as a [mask](#shape--mask) is."),
             }
         ]
@@ -71,27 +66,21 @@ key_rows! {
             pub stiffness: DriveStiffness or "the drive needs a `stiffness`" {
                 /// Stiffness of each drive spring; `"auto"` is k_2 = 0.375 E h, with the thickness h. In a
                 /// graded slider it is multiplied by the relative modulus of each block.
-                stiffness: AutoOrStiffness => Each = key("\"auto\"", KeyKind::Special("`\"auto\"`, or 1e-30 to 1e30 N/m")).paper("k_s")
-                    .or("stiffness_star").or("stiffness_per_area").or("total_stiffness")
-                    .or("total_stiffness_star"),
+                stiffness: AutoOrStiffness => Each = key("\"auto\"", KeyKind::Special("`\"auto\"`, or 1e-30 to 1e30 N/m")).paper("k_s"),
                 /// Stiffness of each drive spring, relative to E h with the thickness h.
                 stiffness_star: f64 => EachStar = key("", DRIVE_STIFFNESS).star(StarUnit::SpringOfBlock)
-                    .or("stiffness").or("stiffness_per_area").or("total_stiffness").or("total_stiffness_star")
                     .title("drive stiffness", "k\u{209b}*", ""),
                 /// Stiffness K per area of the mount, which the drive springs represent, independent of the
                 /// block size: each spring has K l^2.
                 stiffness_per_area: StiffnessPerArea => PerArea = key("", STIFFNESS_PER_AREA)
-                    .or("stiffness").or("stiffness_star").or("total_stiffness").or("total_stiffness_star")
                     .title("stiffness of the mount", "K", "N/m\u{b3}"),
                 /// Total stiffness of all drive springs, distributed in proportion to the modulus of each
                 /// block.
                 total_stiffness: Stiffness => Total = key("", STIFFNESS)
-                    .or("stiffness").or("stiffness_star").or("stiffness_per_area").or("total_stiffness_star")
                     .title("total drive stiffness", "K\u{209b}", "N/m"),
                 /// Total stiffness of all drive springs, relative to E h with the thickness h. A file has at
                 /// most one of these five keys.
                 total_stiffness_star: f64 => TotalStar = key("", DRIVE_STIFFNESS).star(StarUnit::Stiffness)
-                    .or("stiffness").or("stiffness_star").or("stiffness_per_area").or("total_stiffness")
                     .title("total drive stiffness", "K\u{209b}*", ""),
             }
         ]
@@ -106,7 +95,6 @@ key_rows! {
         /// Speed of the drive in the segment, V*.
         pub v_star: f64 = key("", PROGRAM_SPEED).star(StarUnit::Speed),
         /// End of the segment, t*; none for the last segment.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         pub until_star: Option<f64> = key("", TIME_STAR).star(StarUnit::Time),
     }
 }
@@ -136,11 +124,10 @@ impl Drive {
         if slider.body == Body::Bulk {
             self.check_for_bulk(check)?;
         }
-        self.speed.check(check)?;
+        self.check_values(check)?;
         if let DriveSpeed::Program(segments) = &self.speed {
             check_program(segments, check)?;
         }
-        check.value("direction", &self.direction)?;
         if self.motion == Motion::Rotation && self.direction != 0.0 {
             return check.refuse("direction", |key| {
                 format!("`{key}` does not apply to `motion` = \"rotation\", which drives every block in its own direction: leave it out")
@@ -171,23 +158,15 @@ impl Drive {
                 "a rigid slider (`slider.rigid`) is held by the spring `drive.total_stiffness`: give it in N/m".to_owned()
             });
         }
-        self.stiffness.check(check)?;
-        self.attached.check(check)
+        Ok(())
     }
-
     /// Refuses drives that do not apply to a bulk body, which is driven over its whole back.
     fn check_for_bulk(&self, check: &Check) -> Result<(), CaseError> {
+        let turns = self.motion == Motion::Rotation;
+        let is_of_file = matches!(self.attached, Attached::File(_));
         let keys = [
-            (
-                "motion",
-                self.motion == Motion::Rotation,
-                "its equations for rotation are not derived",
-            ),
-            (
-                "attach_file",
-                matches!(self.attached, Attached::File(_)),
-                "its whole back is driven",
-            ),
+            ("motion", turns, "its equations for rotation are not derived"),
+            ("attach_file", is_of_file, "its whole back is driven"),
             ("attach", self.edge().is_some(), "its whole back is driven"),
         ];
         let given = keys.iter().find(|(_, is_given, _)| *is_given);
@@ -208,10 +187,8 @@ fn check_program(segments: &[SpeedSegment], check: &Check) -> Result<(), CaseErr
         return refuse(format!("has {} speeds, more than {MAX_SEGMENTS}", segments.len()));
     }
     for segment in segments {
-        check.value_of(&PROGRAM_SPEED, "program", &segment.v_star)?;
-        if let Some(until) = segment.until_star {
-            check.value_of(&TIME_STAR, "program", &until)?;
-        }
+        segment.v_star.check(check, "program", &PROGRAM_SPEED)?;
+        segment.until_star.check(check, "program", &TIME_STAR)?;
     }
     if let Some(number) = others.iter().position(|segment| segment.until_star.is_none()) {
         return refuse(format!(
@@ -264,9 +241,6 @@ impl Checked for AutoOrStiffness {
     }
 }
 
-/// The word is checked when it is read.
-impl Checked for AttachedEdge {}
-
 /// The segments of a program are checked one by one.
 impl Checked for Vec<SpeedSegment> {}
 
@@ -294,8 +268,4 @@ impl From<AutoOrStiffness> for String {
             AutoOrStiffness::Stiffness(stiffness) => stiffness.to_string(),
         }
     }
-}
-
-fn some_word<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<AttachedEdge>, D::Error> {
-    word(deserializer).map(Some)
 }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::nearest::why_unread;
-use crate::same::Difference;
+use crate::same_on_ranks::Difference;
 use slipfront_base::text::{MAX_EXCERPT, single_line, truncated};
 
 /// A case file that cannot be used.

@@ -16,14 +16,14 @@ use super::friction::Friction;
 use super::initial::Initial;
 use super::key_table::keys_of;
 use super::keys;
-use super::load::read_text;
-use super::motion::Load;
+use super::load::Load;
 use super::output::Output;
 use super::overrides::Override;
 use super::shapes::Shape;
 use super::slider::{Damping, Slider};
 use super::source::Source;
 use super::tables::Tables;
+use super::text::read_text;
 use super::texture::Texture;
 use super::time::Time;
 use super::words::{Body, Loading};
@@ -112,7 +112,6 @@ impl CaseFile {
             }
         });
         let fields = [
-            ("slider.outline_file", &mut self.slider.outline_file),
             ("slider.stiffness_field", &mut self.slider.stiffness_field),
             ("slider.density_field", &mut self.slider.density_field),
             ("load.pressure_field", &mut self.load.pressure_field),
@@ -130,11 +129,17 @@ impl CaseFile {
             Attached::At(_) => None,
         };
         let of_fields =
-            fields.filter_map(move |(key, name)| Some(named(key, name.as_mut()?, FileUse::Blocks)));
+            fields.filter_map(move |(key, name)| Some(named(key, name.as_mut()?, FileUse::Numbers)));
+        let outline = self.slider.outline_file.as_mut();
+        let outline = outline.map(|name| named("slider.outline_file", name, FileUse::Blocks));
         let state = self.initial.state_file.as_mut();
         let state = state.map(|name| named("initial.state_file", name, FileUse::State));
         (
-            of_textures.chain(attached).chain(of_fields).chain(state),
+            of_textures
+                .chain(attached)
+                .chain(outline)
+                .chain(of_fields)
+                .chain(state),
             &self.source,
         )
     }
@@ -259,7 +264,9 @@ pub struct NamedFile<'a> {
 /// Use of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileUse {
-    /// A value of each block, or an image of the slider.
+    /// A number of each block.
+    Numbers,
+    /// Chosen blocks, in an image or an array.
     Blocks,
     /// Measured heights, with any number of points.
     HeightMap,
@@ -348,11 +355,6 @@ impl<'t> ParsedCase<'t> {
         }
         prepared.plain = prepared.with(&[]).ok();
         Ok(prepared)
-    }
-
-    /// The case that was read when this base was [prepared](Self::prepared), if it is valid.
-    pub fn plain(&self) -> Option<&CaseFile> {
-        self.plain.as_ref()
     }
 
     /// The case with these overrides, applied in order.

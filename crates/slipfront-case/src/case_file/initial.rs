@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::check::Check;
+use super::check::{Check, Checked};
 use super::error::CaseError;
 use super::friction::ContactModel;
 use super::key::{ARRAY, KeyKind, above, key, quantity};
@@ -14,29 +14,22 @@ key_rows! {
     /// sites.
     #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
-    pub struct Initial {
+    pub struct Initial checked {
         /// Final state of another run, `state.npy` in its folder, instead of the files below. That run needs
         /// `output.final_state` and the same number of blocks. The drive continues from its position.
-        #[serde(skip_serializing_if = "Option::is_none")]
         pub state_file: Option<String> = key("", KeyKind::File(&["npy"])),
         /// Displacements along x at t = 0, block by block.
-        #[serde(skip_serializing_if = "Option::is_none")]
         pub displacement_x: Option<String> = key("", ARRAY).without("0"),
         /// Displacements along y at t = 0, block by block.
-        #[serde(skip_serializing_if = "Option::is_none")]
         pub displacement_y: Option<String> = key("", ARRAY).without("0"),
         /// Displacement of a value of 1 in these files.
-        #[serde(skip_serializing_if = "Option::is_none")]
         pub displacement_unit: Option<Length> = key("", quantity("m", above(0.0, 1e9)))
             .without("that of u\\*, P mu_s l^2/(E h)"),
         /// Velocities along x half a step before t = 0, block by block.
-        #[serde(skip_serializing_if = "Option::is_none")]
         pub velocity_x: Option<String> = key("", ARRAY).without("0"),
         /// Velocities along y half a step before t = 0, block by block.
-        #[serde(skip_serializing_if = "Option::is_none")]
         pub velocity_y: Option<String> = key("", ARRAY).without("0"),
         /// Velocity of a value of 1 in these files.
-        #[serde(skip_serializing_if = "Option::is_none")]
         pub velocity_unit: Option<Speed> = key("", quantity("m/s", above(0.0, 1e9)))
             .without("that of V\\*, P mu_s l/(h sqrt(E rho))"),
     }
@@ -65,17 +58,12 @@ impl Initial {
     }
 
     pub(super) fn check(&self, check: &Check, contact: ContactModel) -> Result<(), CaseError> {
-        check.value("state_file", &self.state_file)?;
-        check.value("displacement_unit", &self.displacement_unit)?;
-        check.value("velocity_unit", &self.velocity_unit)?;
+        self.check_values(check)?;
         let units = [
             ("displacement_unit", self.displacement_unit.is_some()),
             ("velocity_unit", self.velocity_unit.is_some()),
         ];
         for (files, (unit, has_unit)) in self.files().into_iter().zip(units) {
-            for (key, name) in files {
-                check.value(key, name)?;
-            }
             if has_unit && files.iter().all(|(_, name)| name.is_none()) {
                 let [(x, _), (y, _)] = files;
                 return check.refuse(unit, |key| {

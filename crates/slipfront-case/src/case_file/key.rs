@@ -86,8 +86,8 @@ pub struct Key {
     pub kind: KeyKind,
     /// Default of the key as TOML; empty if it has none.
     pub default: &'static str,
-    /// The alternative keys for the same quantity: a table has one of them.
-    partners: [Option<&'static str>; 4],
+    /// Keys for the same quantity, of which a table has one; this key itself may be among them.
+    partners: &'static [&'static str],
     /// Unit of a key with a star; none for other keys.
     pub star: Option<StarUnit>,
     /// Title of the key; none for keys that are not an axis of any picture.
@@ -105,18 +105,14 @@ pub struct Key {
 impl Key {
     /// The alternative keys for the same quantity: a table has one of them.
     pub fn partners(&self) -> impl Iterator<Item = &'static str> + use<> {
-        self.partners.into_iter().flatten()
+        let own = self.name;
+        self.partners.iter().copied().filter(move |name| *name != own)
     }
 
-    pub(super) const fn or(mut self, partner: &'static str) -> Self {
-        let mut free = 0;
-        while self.partners[free].is_some() {
-            free += 1;
-        }
-        self.partners[free] = Some(partner);
+    pub(super) const fn or(mut self, partners: &'static [&'static str]) -> Self {
+        self.partners = partners;
         self
     }
-
     pub(super) const fn star(mut self, unit: StarUnit) -> Self {
         self.star = Some(unit);
         self
@@ -176,7 +172,7 @@ pub const fn key(default: &'static str, kind: KeyKind) -> Key {
         doc: "",
         kind,
         default,
-        partners: [None; 4],
+        partners: &[],
         star: None,
         title: None,
         paper: "",

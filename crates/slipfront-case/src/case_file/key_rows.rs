@@ -7,8 +7,38 @@
 /// struct then has an enum in their place for the key that was given. A table with none of them is refused
 /// with the sentence after `or`. A second struct has the keys as in the file, with conversions from and to
 /// the first.
+///
+/// A table of a case, `checked` or with alternative keys, also gets the check of its values against the kinds
+/// of their keys, `check_values`.
 #[macro_export]
 macro_rules! key_rows {
+    (
+        $(#[$attribute:meta])*
+        pub struct $table:ident checked {
+            $($(#[doc = $doc:literal])+ $(#[serde($($serde:tt)*)])* pub $name:ident: $type:ty = $key:expr,)+
+        }
+    ) => {
+        $crate::key_rows! {
+            $(#[$attribute])*
+            pub struct $table {
+                $($(#[doc = $doc])+ $(#[serde($($serde)*)])* pub $name: $type = $key,)+
+            }
+        }
+
+        impl $table {
+            /// Refuses values that their keys do not accept.
+            pub(in $crate::case_file) fn check_values(&self, check: &Check) -> Result<(), CaseError> {
+                $(check.value(stringify!($name), &self.$name)?;)+
+                Ok(())
+            }
+        }
+
+        impl Checked for $table {
+            fn check(&self, check: &Check, key: &str, _: &KeyKind) -> Result<(), CaseError> {
+                self.check_values(&check.within(&check.path_of(key), Self::KEYS))
+            }
+        }
+    };
     (
         $(#[$attribute:meta])*
         $of_table:vis struct $table:ident {
@@ -51,12 +81,23 @@ macro_rules! key_rows {
             pub const KEYS: &'static [Key] = &[
                 $($key.named(stringify!($name), concat!($($doc),+)),)*
                 $(
-                    $($key_one.named(stringify!($one), concat!($($doc_one),+)),)+
+                    $($key_one.or($enum::KEYS).named(stringify!($one), concat!($($doc_one),+)),)+
                     $($key_after.named(stringify!($after), concat!($($doc_after),+)),)*
                 )+
             ];
-        }
 
+            /// Refuses values that their keys do not accept.
+            pub(in $crate::case_file) fn check_values(&self, check: &Check) -> Result<(), CaseError> {
+                $(check.value(stringify!($name), &self.$name)?;)*
+                $(
+                    match &self.$choice {
+                        $($enum::$Variant(value) => check.value(stringify!($one), value)?,)+
+                    }
+                    $(check.value(stringify!($after), &self.$after)?;)*
+                )+
+                Ok(())
+            }
+        }
         $(
             $(#[$of_choice])+
             #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +106,9 @@ macro_rules! key_rows {
             }
 
             impl $enum {
+                /// Names of all keys for the quantity, of which a table has one.
+                const KEYS: &'static [&'static str] = &[$(stringify!($one)),+];
+
                 /// Name of the given key.
                 pub const fn key(&self) -> &'static str {
                     match self {
@@ -72,12 +116,6 @@ macro_rules! key_rows {
                     }
                 }
 
-                /// Checks the value of the given key.
-                pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-                    match self {
-                        $(Self::$Variant(value) => check.value(stringify!($one), value),)+
-                    }
-                }
             }
         )+
 

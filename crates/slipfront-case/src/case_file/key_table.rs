@@ -10,10 +10,11 @@ use toml::de::{DeTable, DeValue};
 use super::drive::Drive;
 use super::friction::Friction;
 use super::initial::Initial;
-use super::key::{Key, KeyKind, StarUnit, Title};
-use super::motion::Load;
+use super::key::{Key, KeyKind, StarUnit, Title, joined};
+use super::load::Load;
 use super::output::Output;
-use super::shapes;
+use super::pattern::Pattern;
+use super::shapes::{Cavity, Drawing, Groove, HeightMap, Mask, Polygon};
 use super::slider::Slider;
 use super::time::Time;
 
@@ -96,8 +97,15 @@ pub(super) fn fill_in_all(table: &mut DeTable<'_>, keys: &[Key]) {
 /// The table of the textures.
 pub(super) const TEXTURE: &str = "texture";
 
-/// The sections that are tables.
-const TABLES: [Section; 7] = [
+/// Joins the keys of a shape and the keys common to all shapes.
+macro_rules! shape_keys {
+    ($shape:ident) => {
+        &joined::<{ $shape::KEYS.len() + Pattern::KEYS.len() }>($shape::KEYS, Pattern::KEYS)
+    };
+}
+
+/// Every section of a case file, in the order of the documentation: the tables, and the shapes of textures.
+pub const SECTIONS: [Section; 13] = [
     section(false, "slider", Slider::KEYS),
     section(false, "load", Load::KEYS),
     section(false, "drive", Drive::KEYS),
@@ -105,24 +113,13 @@ const TABLES: [Section; 7] = [
     section(false, "initial", Initial::KEYS),
     section(false, "time", Time::KEYS),
     section(false, "output", Output::KEYS),
+    section(true, "cavity", shape_keys!(Cavity)),
+    section(true, "groove", shape_keys!(Groove)),
+    section(true, "polygon", shape_keys!(Polygon)),
+    section(true, "mask", shape_keys!(Mask)),
+    section(true, "height_map", shape_keys!(HeightMap)),
+    section(true, "drawing", shape_keys!(Drawing)),
 ];
-
-/// Every section of a case file: the tables, and the shapes of textures.
-pub const SECTIONS: [Section; TABLES.len() + shapes::ALL.len()] = {
-    let mut sections = [TABLES[0]; TABLES.len() + shapes::ALL.len()];
-    let mut place = 0;
-    while place < sections.len() {
-        sections[place] = if place < TABLES.len() {
-            TABLES[place]
-        } else {
-            let (shape, keys) = shapes::ALL[place - TABLES.len()];
-            section(true, shape, keys)
-        };
-        place += 1;
-    }
-    sections
-};
-
 const fn section(is_shape: bool, name: &'static str, keys: &'static [Key]) -> Section {
     Section { name, is_shape, keys }
 }
@@ -140,14 +137,14 @@ pub fn title_of(path: &str) -> Option<(Title, Option<usize>)> {
 
 /// The unit of a key with this name, in a section or in a table within one; none for a key without a star.
 pub(crate) fn star_unit(name: &str) -> Option<StarUnit> {
-    fn of(keys: &[Key], name: &str) -> Option<StarUnit> {
+    fn unit_in(keys: &[Key], name: &str) -> Option<StarUnit> {
         keys.iter().find_map(|key| match key.kind {
             _ if key.name == name => key.star,
-            KeyKind::Table(_, inner) => of(inner, name),
+            KeyKind::Table(_, inner) => unit_in(inner, name),
             _ => None,
         })
     }
-    SECTIONS.iter().find_map(|section| of(section.keys, name))
+    SECTIONS.iter().find_map(|section| unit_in(section.keys, name))
 }
 
 /// Whether a key, such as `texture.0.file` or `file` within its table, names a file.

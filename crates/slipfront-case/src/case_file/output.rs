@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 use slipfront::observe::Field;
 
-use super::check::Check;
+use super::check::{Check, Checked};
 use super::error::CaseError;
 use super::key::{AUTO, KeyKind, MAX_TIME_STAR, POSITIVE_TIME, key, number, or_word, within};
-use super::probe::names_of;
+use super::serde_names::names_of;
 use super::slider::MAX_BLOCKS;
-use super::values::{AutoOr, words};
+use super::values::AutoOr;
 use crate::key_rows;
 use slipfront_base::number_format::exact;
 
@@ -16,13 +16,12 @@ key_rows! {
     /// The table `[output]`: snapshots, fields and the series.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
-    pub struct Output {
+    pub struct Output checked {
         /// Instants at which fields are written. `"auto"` is the instants A to F of Fig. 4. A list contains
         /// times t* in increasing order, from 0 to 1e9; `[]` writes none. `every` is multiples of this t*
         /// (more than 0, at most 1e9), in addition to the instants A to F.
         pub snapshots: Snapshots = key("\"auto\"", KeyKind::Special("`\"auto\"`, a list, or `{ every = 5.0 }`")),
         /// Fields that are written at these instants.
-        #[serde(deserialize_with = "words")]
         pub fields: Vec<Field> = key("[\"contact_stress_star\", \"traction\", \"displacement_x\", \"displacement_y\", \"sliding\"]",
             KeyKind::Words(names_of::<Field>))
                 .further_bounds(", each at most once; `\"traction\"` is blank over a texture"),
@@ -65,24 +64,14 @@ pub enum Snapshots {
 
 impl Output {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        match &self.snapshots {
-            Snapshots::Auto => {}
-            // The place of the error is the key `every`, in a table of its own or within the value of
-            // `snapshots`.
-            Snapshots::Every(every) => check.value_of(&SPACING, "snapshots.every", every)?,
-            Snapshots::At(times) => {
-                for time in times {
-                    check.value_of(&SNAPSHOT_TIME, "snapshots", time)?;
-                }
-                if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
-                    let (later, earlier) = (exact(pair[1]), exact(pair[0]));
-                    return check.refuse("snapshots", |key| {
-                        format!(
-                            "`{key}` has {later} after {earlier}: list the times in increasing order, each once"
-                        )
-                    });
-                }
-            }
+        self.check_values(check)?;
+        if let Snapshots::At(times) = &self.snapshots
+            && let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1])
+        {
+            let (later, earlier) = (exact(pair[1]), exact(pair[0]));
+            return check.refuse("snapshots", |key| {
+                format!("`{key}` has {later} after {earlier}: list the times in increasing order, each once")
+            });
         }
         let fields = &self.fields;
         if (1..fields.len()).any(|n| fields[..n].contains(&fields[n])) {
@@ -90,11 +79,23 @@ impl Output {
                 format!("`{key}` names a field twice: name each once")
             });
         }
-        check.value("stride", &u64::from(self.stride))?;
-        check.value("series", &self.series)
+        Ok(())
     }
 }
 
+impl Checked for Snapshots {
+    fn check(&self, check: &Check, key: &str, _: &KeyKind) -> Result<(), CaseError> {
+        match self {
+            Self::Auto => Ok(()),
+            // The place of the error is the key `every`, in a table of its own or within the value of
+            // `snapshots`.
+            Self::Every(every) => every.check(check, &format!("{key}.every"), &SPACING),
+            Self::At(times) => times
+                .iter()
+                .try_for_each(|time| time.check(check, key, &SNAPSHOT_TIME)),
+        }
+    }
+}
 /// `snapshots` as in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::check::Check;
+use super::check::{Check, Checked};
 use super::error::CaseError;
 use super::key::{KeyKind, SIZE, key, whole};
-use super::probe::names_of;
-use super::values::{Pair, length, word};
+use super::serde_names::names_of;
+use super::values::{Pair, length};
 use super::words::Arrangement;
 use crate::key_rows;
 use crate::quantity::Length;
@@ -23,13 +23,12 @@ key_rows! {
     /// The pattern that repeats the shape of a texture; by default there is a single copy.
     #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
-    pub struct Pattern {
+    pub struct Pattern checked {
         /// Distance between neighbouring copies.
         pub pitch: Option<Pitch> = key("", PITCH).title("pitch", "", "m"),
         /// Number of columns and rows of copies: `"auto"` is as many as fit with a `pitch`, and one without.
         pub array: Count = key("\"auto\"", KeyKind::Special("`\"auto\"`, or a pair from 1 to 1000")),
         /// Arrangement of the copies.
-        #[serde(deserialize_with = "word")]
         pub lattice: Arrangement = key("\"square\"", KeyKind::Words(names_of::<Arrangement>)),
         /// Pattern that repeats the array.
         pub repeat: Option<Array> = key("", KeyKind::Special("`{ array = [3, 3], pitch = \"20 um\", lattice = \"square\" }`")),
@@ -48,7 +47,7 @@ pub struct Array {
     #[serde(default)]
     pub array: Count,
     /// Arrangement of the places.
-    #[serde(default, deserialize_with = "word")]
+    #[serde(default)]
     pub lattice: Arrangement,
 }
 
@@ -86,8 +85,9 @@ impl Pattern {
     }
 
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        self.check_values(check)?;
         for (before, array) in self.arrays() {
-            array.check(check, before)?;
+            array.check_lattice(check, before)?;
         }
         if let Some(repeat) = &self.repeat
             && !repeat.is_array()
@@ -107,14 +107,8 @@ impl Array {
         self.pitch.is_some() || self.array != Count::Auto
     }
 
-    fn check(&self, check: &Check, before: &str) -> Result<(), CaseError> {
+    fn check_lattice(&self, check: &Check, before: &str) -> Result<(), CaseError> {
         let key = |name: &str| format!("{before}{name}");
-        if let Count::Of(count) = &self.array {
-            check.value_of(&COUNT, &key("array"), count)?;
-        }
-        for length in self.pitch.iter().flat_map(Pitch::lengths) {
-            check.value_of(&SIZE, &key("pitch"), length)?;
-        }
         match (self.lattice, &self.pitch) {
             (Arrangement::Hexagonal, Some(Pitch::Each(_))) => check.refuse(&key("pitch"), |path| {
                 format!(
@@ -136,11 +130,33 @@ impl Array {
 }
 
 impl Pitch {
-    pub(super) fn lengths(&self) -> &[Length] {
+    fn lengths(&self) -> &[Length] {
         match self {
             Self::Equal(length) => std::slice::from_ref(length),
             Self::Each(lengths) => lengths,
         }
+    }
+}
+
+impl Checked for Array {
+    fn check(&self, check: &Check, key: &str, kind: &KeyKind) -> Result<(), CaseError> {
+        self.array.check(check, &format!("{key}.array"), kind)?;
+        self.pitch.check(check, &format!("{key}.pitch"), kind)
+    }
+}
+
+impl Checked for Count {
+    fn complaint(&self, _: &KeyKind) -> Option<String> {
+        match self {
+            Self::Auto => None,
+            Self::Of(count) => count.complaint(&COUNT),
+        }
+    }
+}
+
+impl Checked for Pitch {
+    fn complaint(&self, _: &KeyKind) -> Option<String> {
+        self.lengths().iter().find_map(|length| length.complaint(&SIZE))
     }
 }
 

@@ -64,7 +64,7 @@ enum Whole {
 }
 
 impl Whole {
-    fn of(number: &DeInteger<'_>) -> Option<Self> {
+    fn parse(number: &DeInteger<'_>) -> Option<Self> {
         let (digits, radix) = (number.as_str(), number.radix());
         let signed = i64::from_str_radix(digits, radix).map(Self::Signed);
         let whole = signed.or_else(|_| u64::from_str_radix(digits, radix).map(Self::Unsigned));
@@ -82,7 +82,7 @@ fn float(text: &str) -> Option<f64> {
 fn unexpected(value: &DeValue<'_>, expected: &dyn Expected) -> ReadError {
     let found = match value {
         DeValue::String(text) => Unexpected::Str(text),
-        DeValue::Integer(number) => match Whole::of(number) {
+        DeValue::Integer(number) => match Whole::parse(number) {
             Some(Whole::Signed(number)) => Unexpected::Signed(number),
             Some(Whole::Unsigned(number)) => Unexpected::Unsigned(number),
             None => return ReadError::custom("integer number overflowed"),
@@ -99,7 +99,7 @@ fn unexpected(value: &DeValue<'_>, expected: &dyn Expected) -> ReadError {
 }
 
 fn whole<'i, V: Visitor<'i>>(number: DeInteger<'i>, visitor: V) -> Result<V::Value, ReadError> {
-    match Whole::of(&number) {
+    match Whole::parse(&number) {
         Some(Whole::Signed(number)) => visitor.visit_i64(number),
         Some(Whole::Unsigned(number)) => visitor.visit_u64(number),
         None => Err(unexpected(&DeValue::Integer(number), &visitor)),
@@ -141,7 +141,10 @@ impl<'de> Reader<'de> {
 
     fn table<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         self.visit(|value| match value {
-            DeValue::Table(table) => visitor.visit_map(Entries::of(table)),
+            DeValue::Table(table) => visitor.visit_map(Entries {
+                left: table.into_iter(),
+                value: None,
+            }),
             other => Err(unexpected(&other, &visitor)),
         })
     }
@@ -184,19 +187,6 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         table: deserialize_map;
     }
 
-    fn deserialize_tuple<V: Visitor<'de>>(self, _length: usize, visitor: V) -> Result<V::Value, ReadError> {
-        self.list(visitor)
-    }
-
-    fn deserialize_tuple_struct<V: Visitor<'de>>(
-        self,
-        _name: &'static str,
-        _length: usize,
-        visitor: V,
-    ) -> Result<V::Value, ReadError> {
-        self.list(visitor)
-    }
-
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -237,7 +227,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
     }
 
     serde::forward_to_deserialize_any! {
-        i128 u128 bytes byte_buf unit unit_struct ignored_any
+        i128 u128 bytes byte_buf unit unit_struct tuple tuple_struct ignored_any
     }
 }
 
@@ -259,15 +249,6 @@ struct Entries<'i> {
     left: <DeTable<'i> as IntoIterator>::IntoIter,
     /// Value of the last key that was read.
     value: Option<Spanned<DeValue<'i>>>,
-}
-
-impl<'i> Entries<'i> {
-    fn of(table: DeTable<'i>) -> Self {
-        Self {
-            left: table.into_iter(),
-            value: None,
-        }
-    }
 }
 
 impl<'de> MapAccess<'de> for Entries<'de> {

@@ -4,12 +4,12 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use slipfront::lattice::{K_STRAIGHT, POISSON_RATIO};
 use slipfront::{Edges, Face, next_side};
 
-use super::check::Check;
+use super::check::{Check, Checked};
 use super::error::CaseError;
 use super::key::{ARRAY, Key, KeyKind, StarUnit, key, number, quantity, whole, within};
-use super::motion::Along;
-use super::probe::names_of;
-use super::values::{Pair, pair, word};
+use super::load::Along;
+use super::serde_names::names_of;
+use super::values::{Pair, is_default, pair};
 use super::words::{Body, EdgeSprings, Outline};
 use crate::key_rows;
 use crate::quantity::{Density, Length, Pressure, Rate};
@@ -44,7 +44,7 @@ key_rows! {
             .note("[Thickness and mount](../model.md#thickness-and-mount) tells what it changes, and what to write for a bulk body."),
         /// Kind of body: a sheet, or a bulk body, which has the exact elastic response of a periodic piece of
         /// a larger part, deep or glued to a rigid back.
-        #[serde(deserialize_with = "word", skip_serializing_if = "Body::is_sheet")]
+        #[serde(skip_serializing_if = "is_default")]
         pub body: Body = key("\"sheet\"", KeyKind::Words(names_of::<Body>))
             .note("See [bulk bodies](../model.md#bulk-bodies)."),
         /// Height of a bulk body, from the contact to the driven back.
@@ -56,7 +56,7 @@ key_rows! {
         /// Support of the contact face of a bulk body: a pressure that is given at every place, as on a
         /// compliant foundation, or a rigid foundation that keeps the face flat. A flat face is 4 (1 -
         /// nu)^2/(3 - 4 nu) times as stiff along: a third more at nu = 0, nothing at 0.5.
-        #[serde(deserialize_with = "word", skip_serializing_if = "Face::is_pressure")]
+        #[serde(skip_serializing_if = "is_default")]
         pub face: Face = key("\"pressure\"", KeyKind::Words(names_of::<Face>)),
         /// Young's modulus.
         pub young_modulus: Pressure = key("\"100 GPa\"", quantity("Pa", within(1e-3, 1e15))).paper("E")
@@ -76,9 +76,9 @@ key_rows! {
                 /// wave if not given.
                 omega_star: f64 => OmegaStar = key("0.1", number(within(0.0, 1e3), "a slider that rings little has 1"))
                     .star(StarUnit::Rate)
-                    .or("damping_rate").paper("Omega* = Omega sqrt(m/k_1)").title("damping", "\u{3a9}*", ""),
+                    .paper("Omega* = Omega sqrt(m/k_1)").title("damping", "\u{3a9}*", ""),
                 /// Damping with its unit, instead of `omega_star`.
-                damping_rate: Rate => Rate = key("", quantity("1/s", within(0.0, 1e24))).or("omega_star")
+                damping_rate: Rate => Rate = key("", quantity("1/s", within(0.0, 1e24)))
                     .paper("Omega")
                     .title("damping", "\u{3a9}", "1/s"),
             }
@@ -89,12 +89,11 @@ key_rows! {
             .further_bounds(", or a pair of them"),
         /// Springs between neighbours along a free edge: as stiff as those inside, as in the paper, or half
         /// as stiff, as a continuum of squares between four blocks has them.
-        #[serde(deserialize_with = "word", skip_serializing_if = "EdgeSprings::are_whole")]
+        #[serde(skip_serializing_if = "is_default")]
         pub edge_springs: EdgeSprings = key("\"whole\"", KeyKind::Words(names_of::<EdgeSprings>))
             .note("See [springs along edges](../model.md#an-upright-sheet)."),
         /// Shape of the slider; there are no blocks outside it. A disc needs as many blocks along x as along
         /// y.
-        #[serde(deserialize_with = "word")]
         pub outline: Outline = key("\"rectangle\"", KeyKind::Words(names_of::<Outline>)),
         /// Mask of the shape, for `outline = "mask"`: dark pixels, or 1 in an array, are blocks.
         pub outline_file: Option<String> = key("", KeyKind::File(&["png", "npy"])),
@@ -104,13 +103,13 @@ key_rows! {
             .star(StarUnit::Time)
             .title("viscosity", "\u{3c4}\u{1d65}*", ""),
         /// Young's modulus relative to `young_modulus`, block by block.
-        pub stiffness_field: Option<String> = key("", ARRAY).or("stiffness_grade"),
+        pub stiffness_field: Option<String> = key("", ARRAY).or(&["stiffness_grade"]),
         /// Young's modulus relative to `young_modulus`, from one edge to the other, instead of the field.
-        pub stiffness_grade: Option<Grade> = key("", GRADE).or("stiffness_field"),
+        pub stiffness_grade: Option<Grade> = key("", GRADE).or(&["stiffness_field"]),
         /// Density relative to `density`, block by block.
-        pub density_field: Option<String> = key("", ARRAY).or("density_grade"),
+        pub density_field: Option<String> = key("", ARRAY).or(&["density_grade"]),
         /// Density relative to `density`, from one edge to the other, instead of the field.
-        pub density_grade: Option<Grade> = key("", GRADE).or("density_field"),
+        pub density_grade: Option<Grade> = key("", GRADE).or(&["density_field"]),
     }
 }
 
@@ -119,9 +118,8 @@ key_rows! {
     /// the other.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
-    pub struct Grade {
+    pub struct Grade checked {
         /// The axis.
-        #[serde(deserialize_with = "word")]
         pub along: Along = key("", KeyKind::Words(names_of::<Along>)),
         /// Value at the edge where the axis begins.
         pub from: f64 = key("", RELATIVE_PROPERTY),
@@ -170,7 +168,7 @@ impl Slider {
 
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         let [nx, ny] = self.blocks;
-        check.value("blocks", &self.blocks)?;
+        self.check_values(check)?;
         let total = u64::from(nx) * u64::from(ny);
         if total > MAX_BLOCKS_TOTAL {
             return check.refuse("blocks", |key| {
@@ -191,35 +189,8 @@ impl Slider {
                 });
             }
         }
-        check.value("block_size", &self.block_size)?;
-        check.value("thickness", &self.thickness)?;
         self.check_body(check)?;
         self.check_rigid(check)?;
-        check.value("young_modulus", &self.young_modulus)?;
-        check.value("density", &self.density)?;
-        self.damping.check(check)?;
-        check.value("viscosity_time_star", &self.viscosity_time_star)?;
-        let properties = [
-            (
-                "stiffness_field",
-                &self.stiffness_field,
-                "stiffness_grade",
-                &self.stiffness_grade,
-            ),
-            (
-                "density_field",
-                &self.density_field,
-                "density_grade",
-                &self.density_grade,
-            ),
-        ];
-        for (field, file, grade, ends) in properties {
-            check.value(field, file)?;
-            if let Some(Grade { from, to, .. }) = ends {
-                check.value_of(&RELATIVE_PROPERTY, &format!("{grade}.from"), from)?;
-                check.value_of(&RELATIVE_PROPERTY, &format!("{grade}.to"), to)?;
-            }
-        }
         self.check_edge_springs(check)?;
         self.check_outline(check)
     }
@@ -227,7 +198,7 @@ impl Slider {
     /// Refuses halved springs unless every edge is that of a sheet of squares between blocks.
     fn check_edge_springs(&self, check: &Check) -> Result<(), CaseError> {
         let [nx, ny] = self.blocks;
-        let why = if self.edge_springs.are_whole() {
+        let why = if self.edge_springs == EdgeSprings::Whole {
             return Ok(());
         } else if self.body == Body::Bulk {
             "a bulk body has no springs"
@@ -245,13 +216,10 @@ impl Slider {
 
     /// Refuses a rigid slider of several blocks, or with a modulus.
     fn check_rigid(&self, check: &Check) -> Result<(), CaseError> {
+        let has_modulus = self.young_modulus.si() != DEFAULT_MODULUS;
         let keys = [
             ("blocks", self.blocks != [1, 1], "is one block: set it to [1, 1]"),
-            (
-                "young_modulus",
-                self.young_modulus.si() != DEFAULT_MODULUS,
-                "has none: leave it out",
-            ),
+            ("young_modulus", has_modulus, "has none: leave it out"),
         ];
         let wrong = keys.iter().find(|(_, is_wrong, _)| self.rigid && *is_wrong);
         wrong.map_or(Ok(()), |(key, _, why)| {
@@ -263,8 +231,6 @@ impl Slider {
 
     /// Refuses keys of a bulk body for a sheet, and vice versa.
     fn check_body(&self, check: &Check) -> Result<(), CaseError> {
-        check.value("height", &self.height)?;
-        check.value("poisson", &self.poisson)?;
         let of_bulk = [
             ("height", self.height.is_some()),
             ("poisson", self.poisson.is_some()),
@@ -278,24 +244,22 @@ impl Slider {
                 })
             });
         }
+        let has_outline = self.outline != Outline::Rectangle;
+        let is_viscous = self.viscosity_time_star > 0.0;
         let of_sheet = [
             (
                 "thickness",
                 self.thickness.is_some(),
                 "a bulk body has a `height`",
             ),
-            (
-                "outline",
-                self.outline != Outline::Rectangle,
-                "it is a periodic piece of a larger part",
-            ),
+            ("outline", has_outline, "it is a periodic piece of a larger part"),
             ("stiffness_field", self.stiffness_field.is_some(), UNEQUAL),
             ("stiffness_grade", self.stiffness_grade.is_some(), UNEQUAL),
             ("density_field", self.density_field.is_some(), UNEQUAL),
             ("density_grade", self.density_grade.is_some(), UNEQUAL),
             (
                 "viscosity_time_star",
-                self.viscosity_time_star > 0.0,
+                is_viscous,
                 "no dampers of a bulk body are derived",
             ),
         ];
@@ -359,7 +323,6 @@ impl Slider {
     }
 
     fn check_outline(&self, check: &Check) -> Result<(), CaseError> {
-        check.value("outline_file", &self.outline_file)?;
         let [nx, ny] = self.blocks;
         match (self.outline, &self.outline_file) {
             (Outline::Mask, None) => check.refuse("outline", |key| {

@@ -9,8 +9,8 @@ use super::error::CaseError;
 use super::key::Key;
 use super::key_table::{SECTIONS, Section, fill_in_all};
 use super::keys::header;
-use super::probe::names_of;
 use super::reader::Reader;
+use super::serde_names::names_of;
 use super::source::Source;
 
 /// The tables of a parsed file that remain to be read.

@@ -9,7 +9,7 @@ use super::error::CaseError;
 use super::key_table::SECTIONS;
 use super::keys::{texture_header, unknown, unknown_shape};
 use super::pattern::Pattern;
-use super::probe::names_of;
+use super::serde_names::names_of;
 use super::shapes::Shape;
 use super::tables::Tables;
 
@@ -109,14 +109,8 @@ impl<'i> Tables<'_, 'i> {
         }
         let header = texture_header(section.name);
         let table = Spanned::new(span.clone(), DeValue::Table(table));
-        let shape = match section.name {
-            "cavity" => Shape::Cavity(self.read_keys(table, &header, Some(section))?),
-            "groove" => Shape::Groove(self.read_keys(table, &header, Some(section))?),
-            "polygon" => Shape::Polygon(self.read_keys(table, &header, Some(section))?),
-            "height_map" => Shape::HeightMap(self.read_keys(table, &header, Some(section))?),
-            "drawing" => Shape::Drawing(self.read_keys(table, &header, Some(section))?),
-            _ => Shape::Mask(self.read_keys(table, &header, Some(section))?),
-        };
+        let shape = Shape::read(self, section, table, &header)?;
+        let shape = shape.ok_or_else(|| self.source.error_at(shape_span, unknown_shape(name)))?;
         let pattern = Spanned::new(span, DeValue::Table(pattern));
         Ok(Texture {
             shape,

@@ -5,14 +5,14 @@ use std::ops::Bound::{Excluded, Included, Unbounded};
 use serde::{Deserialize, Serialize};
 use slipfront::StopReason;
 
-use super::check::Check;
+use super::check::{Check, Checked};
 use super::drive::DriveSpeed;
 use super::error::CaseError;
 use super::key::{
     AUTO, Key, KeyKind, MAX_TIME_STAR, POSITIVE_TIME, StarUnit, between, key, or_word, quantity, within,
 };
-use super::probe::names_of;
-use super::values::{AutoOr, WordOrNumber, word};
+use super::serde_names::names_of;
+use super::values::{AutoOr, WordOrNumber};
 use crate::key_rows;
 use crate::quantity::Duration;
 
@@ -30,10 +30,10 @@ key_rows! {
                 /// change of speed.
                 duration_star: AutoOr => Star = key("\"auto\"", or_word(POSITIVE_TIME, "8/V* shows onset and sliding", AUTO))
                     .star(StarUnit::Time)
-                    .or("duration").paper("t*").title("duration", "t*", ""),
+                    .paper("t*").title("duration", "t*", ""),
                 /// Duration of the run with its unit, instead of `duration_star`.
                 duration: Duration => Duration = key("", quantity("s", within(1e-24, 1e12)))
-                    .or("duration_star").paper("t")
+                    .paper("t")
                     .title("duration", "t", "s"),
             }
         ]
@@ -44,7 +44,6 @@ key_rows! {
             &["auto", "paper"])).paper("dt*").title("time step", "\u{394}t*", ""),
         /// Condition that ends the run: its duration, or the fall that ends the first peak as soon as it is
         /// seen.
-        #[serde(deserialize_with = "word")]
         pub stop: StopReason = key("\"end\"", KeyKind::Words(names_of::<StopReason>))
             .note("Under [slow loading](#slow-loading) `\"after_onset\"` ends it where the kinetic window begins."),
         /// Start of the window that mu_k* is averaged over; `"auto"` is t_s* + 2.5/V*.
@@ -73,19 +72,16 @@ pub enum TimeStep {
 impl Time {
     /// Checks the times; some bounds depend on the speed of the drive.
     pub(super) fn check(&self, check: &Check, speed: &DriveSpeed) -> Result<(), CaseError> {
-        self.duration.check(check)?;
-        match (self.step, speed) {
-            (TimeStep::Number(dt_star), _) => check.value("step", &dt_star)?,
-            (TimeStep::Paper, DriveSpeed::VStar(v_star)) if v_star * 2.0 / 3.0 >= UNSTABLE_STEP => {
-                let step = v_star * 2.0 / 3.0;
-                return check.refuse("step", |key| {
-                    format!(
-                        "`{key}` = \"paper\" is (2/3) V* = {step:.4}: it must be less than {UNSTABLE_STEP}; use \"auto\", or a \
-                         smaller `drive.v_star`"
-                    )
-                });
-            }
-            _ => {}
+        if let (TimeStep::Paper, DriveSpeed::VStar(v_star)) = (self.step, speed)
+            && v_star * 2.0 / 3.0 >= UNSTABLE_STEP
+        {
+            let step = v_star * 2.0 / 3.0;
+            return check.refuse("step", |key| {
+                format!(
+                    "`{key}` = \"paper\" is (2/3) V* = {step:.4}: it must be less than {UNSTABLE_STEP}; use \"auto\", or a \
+                     smaller `drive.v_star`"
+                )
+            });
         }
         if let AutoOr::Number(from) = self.kinetic_from_star {
             let end = match &self.duration {
@@ -95,10 +91,18 @@ impl Time {
             let remark = "the average is taken from there to the end of the run";
             check.number_within("kinetic_from_star", from, (Included(0.0), end), remark)?;
         }
-        Ok(())
+        self.check_values(check)
     }
 }
 
+impl Checked for TimeStep {
+    fn complaint(&self, kind: &KeyKind) -> Option<String> {
+        match self {
+            Self::Auto | Self::Paper => None,
+            Self::Number(dt_star) => dt_star.complaint(kind),
+        }
+    }
+}
 impl TryFrom<WordOrNumber> for TimeStep {
     type Error = &'static str;
 

@@ -3,8 +3,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 
-use serde::de::value::Error as ValueError;
-use serde::de::{Error as _, IntoDeserializer, SeqAccess, Visitor};
+use serde::de::{Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::quantity::{Length, QuantityError};
@@ -54,62 +53,9 @@ where
     Pair::deserialize(deserializer).map(|Pair(values)| values)
 }
 
-/// One of the words of `T`, an enum of unit variants, which serde would also read from a table
-/// `{ word = {} }`.
-struct Word<T>(T);
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Word<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let mut found = None;
-        deserializer.deserialize_str(WordVisitor(&mut |word| {
-            found = Some(T::deserialize(word.to_owned().into_deserializer())?);
-            Ok(())
-        }))?;
-        found
-            .map(Word)
-            .ok_or_else(|| D::Error::custom("expected a word in quotes"))
-    }
-}
-
-/// Visitor that looks up a word during the visit, so that an error still gets the place of the word. It is
-/// not generic, so that all words share its code.
-struct WordVisitor<'a>(&'a mut dyn FnMut(&str) -> Result<(), ValueError>);
-
-impl Visitor<'_> for WordVisitor<'_> {
-    type Value = ();
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a word in quotes")
-    }
-
-    fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<(), E> {
-        (self.0)(word).map_err(E::custom)
-    }
-}
-
-pub(super) fn word<'de, D, T>(deserializer: D) -> Result<T, D::Error>
-where
-    D: Deserializer<'de>,
-    T: Deserialize<'de>,
-{
-    Word::deserialize(deserializer).map(|Word(value)| value)
-}
-
-pub(super) fn some_word<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: Deserialize<'de>,
-{
-    word(deserializer).map(Some)
-}
-
-pub(super) fn words<'de, D, T>(deserializer: D) -> Result<Vec<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: Deserialize<'de>,
-{
-    let words: Vec<Word<T>> = Vec::deserialize(deserializer)?;
-    Ok(words.into_iter().map(|Word(value)| value).collect())
+/// Whether a value equals the default of its type, so that a printed case may omit its key.
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// A number, or a word in place of one.

@@ -25,12 +25,6 @@ pub enum Body {
     Bulk,
 }
 
-impl Body {
-    pub(super) fn is_sheet(&self) -> bool {
-        *self == Self::Sheet
-    }
-}
-
 /// Direction in which friction acts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -42,12 +36,6 @@ pub enum FrictionAlong {
     X,
 }
 
-impl FrictionAlong {
-    pub(super) fn is_plane(&self) -> bool {
-        *self == Self::Plane
-    }
-}
-
 /// Stiffness of the springs along free edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -57,12 +45,6 @@ pub enum EdgeSprings {
     Whole,
     /// Springs half as stiff.
     Halved,
-}
-
-impl EdgeSprings {
-    pub(super) fn are_whole(&self) -> bool {
-        *self == Self::Whole
-    }
 }
 
 /// The words of `attach`.

@@ -21,10 +21,10 @@ impl Encoding {
     ///
     /// ```
     /// # use slipfront_case::table::Encoding;
-    /// assert_eq!(Encoding::of(b"\xff\xfet\0"), Encoding::Utf16Le);
-    /// assert_eq!(Encoding::of(b"t (\xb5s)\n"), Encoding::Windows1252);
+    /// assert_eq!(Encoding::detect(b"\xff\xfet\0"), Encoding::Utf16Le);
+    /// assert_eq!(Encoding::detect(b"t (\xb5s)\n"), Encoding::Windows1252);
     /// ```
-    pub fn of(head: &[u8]) -> Self {
+    pub fn detect(head: &[u8]) -> Self {
         match head {
             [0xff, 0xfe, ..] => return Self::Utf16Le,
             [0xfe, 0xff, ..] => return Self::Utf16Be,

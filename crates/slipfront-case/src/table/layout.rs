@@ -244,7 +244,7 @@ impl TableLayout {
     /// When the head is not text, can be read in two ways, or does not have the properties in `options`.
     pub fn find(head: &[u8], options: TableOptions) -> Result<Self, TableError> {
         binary(head).map_or(Ok(()), |kind| Err(TableError::Binary(kind)))?;
-        let encoding = Encoding::of(head);
+        let encoding = Encoding::detect(head);
         let text = encoding.text(head);
         let text = looked_at(&text, head.len() as u64 >= HEAD_BYTES);
         let stated = sep_line(text);
@@ -265,7 +265,7 @@ impl TableLayout {
                 None => &['.', ','],
             };
             for &decimal in decimals {
-                readings.push(Reading::of(text, encoding, [separator, decimal], options)?);
+                readings.push(Reading::read(text, encoding, [separator, decimal], options)?);
             }
         }
         best(readings, text, options)
@@ -388,7 +388,7 @@ impl TableLayout {
 
 impl Reading {
     /// Reads the text with this separator and decimal sign.
-    fn of(
+    fn read(
         text: &str,
         encoding: Encoding,
         [separator, decimal]: [char; 2],

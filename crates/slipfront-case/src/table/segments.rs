@@ -20,7 +20,7 @@ use super::error::TableError;
 /// # Errors
 /// When the text has fewer segments.
 pub fn segment(table: &[u8], number: u32) -> Result<String, TableError> {
-    let text = Encoding::of(table).text(table);
+    let text = Encoding::detect(table).text(table);
     let lines: Vec<&str> = text.lines().collect();
     let segments = segments(&lines);
     let place = number

@@ -60,7 +60,7 @@ impl Layer {
 
 impl OutlineDrawing {
     /// The outlines of a case's textures.
-    pub(super) fn of(case: &Case) -> Result<Self, TextureFileError> {
+    pub(super) fn new(case: &Case) -> Result<Self, TextureFileError> {
         let lattice = &case.model.lattice;
         let size = [lattice.nx, lattice.ny];
         let mut drawing = Self {

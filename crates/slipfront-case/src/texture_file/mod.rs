@@ -44,10 +44,7 @@ pub struct Options {
 /// written.
 pub fn write(case: &Case, path: &Path, options: Options) -> Result<Vec<String>, TextureFileError> {
     let (bytes, notes) = contents(case, path, options)?;
-    write_atomic(path, &bytes).map_err(|source| ArrayError::Write {
-        path: path.to_owned(),
-        source,
-    })?;
+    write_atomic(path, &bytes).map_err(ArrayError::write(path))?;
     Ok(notes)
 }
 
@@ -79,17 +76,13 @@ pub fn contents(
             let textured = textured_blocks(case);
             let pixel = |at: usize| textured[at / width / scale * nx + at % width / scale];
             let pixels: Vec<bool> = (0..width * height).map(pixel).collect();
-            let bytes = png_of_mask(width, height, &pixels);
-            let failed = |source| ArrayError::Write {
-                path: path.to_owned(),
-                source,
-            };
-            (bytes.map_err(failed)?, Vec::new())
+            let bytes = png_of_mask(width, height, &pixels).map_err(ArrayError::write(path))?;
+            (bytes, Vec::new())
         }
         "gsf" => (gsf::field(case), Vec::new()),
         "stl" => (stl::solid(case, depth.unwrap_or_default())?, Vec::new()),
         "svg" | "dxf" => {
-            let drawing = OutlineDrawing::of(case)?;
+            let drawing = OutlineDrawing::new(case)?;
             let text = if ending == "svg" {
                 svg::text(&drawing)
             } else {

@@ -164,7 +164,7 @@ fn make_in_memory(size: usize, text: &str, folder: &Path) -> Vec<Result<Case, Ca
         };
         let text = format!("slider.blocks = [{NX}, {NY}]\n{text}");
         let file = CaseFile::parse(&text, "case.toml", &[])?;
-        Case::to_run_with(file, "case", files, &mut |_| true, ranks)
+        Case::to_run(file, "case", files, &mut |_| true, ranks)
     })
 }
 

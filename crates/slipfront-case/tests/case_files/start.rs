@@ -27,7 +27,7 @@ fn case(text: &str, tables: &[(&str, &[Vec<f64>])]) -> Result<Case, CaseError> {
         in_memory: Some(&in_memory),
     };
     let file = CaseFile::parse(text, "case.toml", &[])?;
-    Case::to_run_with(file, "case", files, &mut |_| true, Ranks::ALONE)
+    Case::to_run(file, "case", files, &mut |_| true, Ranks::ALONE)
 }
 
 fn begin(case: &Case, kernel: Kernel) -> Simulation {
@@ -123,7 +123,7 @@ fn chain(initial: &str, rows: &[Vec<f64>]) -> Case {
         in_memory: Some(&in_memory),
     };
     let file = CaseFile::parse(&text, "case.toml", &[]).unwrap();
-    Case::to_run_with(file, "case", files, &mut |_| true, Ranks::ALONE).unwrap()
+    Case::to_run(file, "case", files, &mut |_| true, Ranks::ALONE).unwrap()
 }
 
 /// A mode of the chain oscillates at the frequency of the scheme, sin(w dt/2) = w_0 dt/2, with w_0 of the

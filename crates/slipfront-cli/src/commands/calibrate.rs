@@ -3,18 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_calibrate::{CalibrationFile, CalibrationFolder, SampledRecord};
+use slipfront_calibrate::{CalibrationFile, CalibrationFolder, CalibrationProgress, SampledRecord};
 use slipfront_study::StudyError;
 
-use crate::device::DeviceArgs;
 use crate::failure::Failure;
-use crate::force::ForceArg;
-use crate::print::{print, print_file, print_message};
+use crate::print::{print, print_file, print_json, print_message};
 use crate::print_stderr::print_notes;
-use crate::progress::calibrate::CalibrateProgress;
-use crate::report::text_of;
+use crate::progress::calibrate::show_calibration;
+use crate::progress::display::ProgressDisplay;
+use crate::runs_args::RunsArgs;
 use crate::signals::Signals;
-use crate::threads::{count_from_one, set_threads};
+use crate::threads::set_threads;
 
 /// Estimate parameters from measured friction curves
 ///
@@ -51,12 +50,7 @@ pub(crate) struct CalibrateCommand {
     #[arg(long, value_name = "DIR")]
     training: Option<PathBuf>,
     #[command(flatten)]
-    force: ForceArg,
-    /// Maximum number of runs at a time [default: one per core]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = count_from_one)]
-    threads: Option<u16>,
-    #[command(flatten)]
-    device: DeviceArgs,
+    runs: RunsArgs,
     /// Do not print progress and estimates
     #[arg(short, long)]
     quiet: bool,
@@ -67,7 +61,7 @@ pub(crate) struct CalibrateCommand {
 
 impl CalibrateCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        let threads = set_threads(self.threads)?;
+        let threads = set_threads(self.runs.threads)?;
         let file = CalibrationFile::load(&self.calibration).map_err(Failure::input)?;
         if self.dry_run {
             return self.plan(&file);
@@ -75,28 +69,31 @@ impl CalibrateCommand {
         let records = file.read(&self.records).map_err(Failure::input)?;
         // A calibration that is invalid or needs too much memory leaves no folder.
         file.check_memory(&records, threads).map_err(Failure::input)?;
-        let device = self.device.open(None, self.quiet || self.json)?;
-        let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
+        let device = self.runs.device.open(None, self.quiet || self.json)?;
+        let out = self
+            .out
+            .unwrap_or_else(|| Path::new("results").join(&file.project.name));
         let training = self.training.as_deref();
         let notes: Vec<String> = records.iter().flat_map(SampledRecord::notes).collect();
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let folder = CalibrationFolder::open(&out, training, &file, records, self.force.given);
-        let mut folder = folder.map_err(Failure::of_folder)?;
+        let folder = CalibrationFolder::open(&out, training, &file, records, self.runs.force.given);
+        let mut folder = folder.map_err(Failure::from_folder)?;
         if !self.quiet && !self.json {
             print_notes(notes);
             print_notes(folder.notes());
         }
-        let mut progress = CalibrateProgress::new(self.quiet);
-        let found = folder.find(device.as_deref(), &signals.stop, &mut |now| progress.show(now));
+        let mut progress = ProgressDisplay::new(self.quiet);
+        let show = &mut |now: &CalibrationProgress| show_calibration(&mut progress, now);
+        let found = folder.find(device.as_deref(), &signals.stop, show);
         progress.finish();
         let text = found.map_err(|error| match error {
-            StudyError::Interrupted => {
-                let sentence = "stopped by a signal: the same command resumes from there";
-                Failure::stopped(&signals, anyhow::anyhow!(sentence))
-            }
+            StudyError::Interrupted => Failure::stopped(
+                &signals,
+                "stopped by a signal: the same command resumes from there",
+            ),
             StudyError::Training(error) => Failure::input(error),
-            error => Failure::of_results(&signals, error),
+            error => Failure::from_results(&signals, error),
         })?;
         if self.json {
             print_file(&folder.numbers())?;
@@ -117,16 +114,16 @@ impl CalibrateCommand {
         };
         let grids = grids.map_err(Failure::input)?;
         let signals = Signals::catch().map_err(Failure::running)?;
-        let mut progress = CalibrateProgress::new(self.quiet);
-        let plan = file.plan(grids, &signals.stop, &mut |now| progress.show(now));
+        let mut progress = ProgressDisplay::new(self.quiet);
+        let show = &mut |now: &CalibrationProgress| show_calibration(&mut progress, now);
+        let plan = file.plan(grids, &signals.stop, show);
         progress.finish();
         let plan = plan.map_err(|error| match error {
-            StudyError::Interrupted => Failure::stopped(&signals, anyhow::anyhow!("stopped by a signal")),
+            StudyError::Interrupted => Failure::stopped(&signals, "stopped by a signal"),
             error => Failure::input(error),
         })?;
         if self.json {
-            let plan = serde_json::to_value(&plan).map_err(Failure::running)?;
-            return print(&text_of(&plan));
+            return print_json(&plan);
         }
         print(&plan.in_words())
     }

@@ -5,9 +5,12 @@ use slipfront_run::estimate_cost::StepTime;
 
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::{print, print_json};
 use crate::ranks::CommandRanks;
-use crate::report;
+use crate::report::cost::cost;
+use crate::report::json::check;
+use crate::report::lengths::lengths;
+use crate::report::physics::physics;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
@@ -33,9 +36,9 @@ impl CheckCommand {
         let signals = Signals::catch().map_err(Failure::running)?;
         let case = self.case.load(&CommandRanks::alone(), &signals, false)?;
         if self.json {
-            return print(&report::text_of(&report::check(&case, &StepTime::of(&case))));
+            return print_json(&check(&case, &StepTime::measure(&case)));
         }
-        print(&(report::physics(&case) + &report::lengths(&case)))?;
-        print(&report::cost(&case, &StepTime::of(&case)))
+        print(&(physics(&case) + &lengths(&case)))?;
+        print(&cost(&case, &StepTime::measure(&case)))
     }
 }

@@ -10,12 +10,10 @@ use slipfront_study::{CostLimits, StudyFolder};
 use super::study::{dry_run, run_all};
 use crate::bounds::within;
 use crate::case_args::CaseArgs;
-use crate::device::DeviceArgs;
 use crate::failure::Failure;
-use crate::force::ForceArg;
-use crate::print::{print, print_message};
+use crate::print::{print, print_json, print_message};
 use crate::ranks::CommandRanks;
-use crate::report::text_of;
+use crate::runs_args::RunsArgs;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads, set_worker_threads};
 use crate::wrap::stdout_columns;
@@ -44,12 +42,7 @@ pub(crate) struct ConvergeCommand {
     #[arg(long, value_name = "N", value_parser = count_from_one)]
     replicates: Option<u16>,
     #[command(flatten)]
-    force: ForceArg,
-    /// Maximum number of runs at a time [default: one per core]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = count_from_one)]
-    threads: Option<u16>,
-    #[command(flatten)]
-    device: DeviceArgs,
+    runs: RunsArgs,
     /// Refuse to run if all runs together need more memory, in GB
     #[arg(long, value_name = "GB", value_parser = gigabytes)]
     max_memory: Option<f64>,
@@ -75,9 +68,9 @@ fn gigabytes(text: &str) -> Result<f64, String> {
 impl ConvergeCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = if self.dry_run {
-            set_threads(self.threads)?
+            set_threads(self.runs.threads)?
         } else {
-            set_worker_threads(self.threads, 0)?
+            set_worker_threads(self.runs.threads, 0)?
         };
         let signals = Signals::catch().map_err(Failure::running)?;
         let case = self.case.load(&CommandRanks::alone(), &signals, self.quiet)?;
@@ -92,17 +85,17 @@ impl ConvergeCommand {
             time: self.max_time,
         };
         limits.check(&plan, threads).map_err(Failure::input)?;
-        let device = self.device.open(None, self.quiet || self.json)?;
+        let device = self.runs.device.open(None, self.quiet || self.json)?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&file.name));
-        let folder = StudyFolder::open(&out, &file, None, self.force.given).map_err(Failure::of_folder)?;
+        let folder =
+            StudyFolder::open(&out, &file, None, self.runs.force.given).map_err(Failure::from_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
         let results = run_all(&plan, &folder, device.as_deref(), &signals, self.quiet)?;
         let found = write(&plan, &results, &folder, &signals.stop);
-        let found = found.map_err(|error| Failure::of_results(&signals, error))?;
+        let found = found.map_err(|error| Failure::from_results(&signals, error))?;
         if self.json {
-            let found = serde_json::to_value(&found).map_err(Failure::running)?;
-            print(&text_of(&found))?;
+            print_json(&found)?;
         } else if !self.quiet {
             print_message(&text(&plan, &found, stdout_columns()));
         }

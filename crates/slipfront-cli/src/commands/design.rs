@@ -8,15 +8,15 @@ use jiff::SignedDuration;
 use slipfront_design::{Bounds, DesignFile, DesignFolder};
 use slipfront_study::StudyError;
 
-use crate::device::DeviceArgs;
 use crate::failure::Failure;
-use crate::force::ForceArg;
-use crate::print::{print, print_file, print_message};
+use crate::print::{print, print_file, print_json, print_message};
 use crate::print_stderr::print_notes;
-use crate::progress::design::DesignProgress;
-use crate::report::{self, text_of};
+use crate::progress::design::show_design;
+use crate::progress::display::ProgressDisplay;
+use crate::report::design::design;
+use crate::runs_args::RunsArgs;
 use crate::signals::Signals;
-use crate::threads::{count_from_one, set_threads};
+use crate::threads::set_threads;
 
 /// Search for a texture with the desired friction
 ///
@@ -45,12 +45,7 @@ pub(crate) struct DesignCommand {
     #[arg(long, value_name = "TIME")]
     time: Option<SignedDuration>,
     #[command(flatten)]
-    force: ForceArg,
-    /// Maximum number of runs at a time [default: one per core]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = count_from_one)]
-    threads: Option<u16>,
-    #[command(flatten)]
-    device: DeviceArgs,
+    many_runs: RunsArgs,
     /// Print the target, the maximum number of runs and their estimated time, without running them
     #[arg(long)]
     dry_run: bool,
@@ -64,7 +59,7 @@ pub(crate) struct DesignCommand {
 
 impl DesignCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        let threads = set_threads(self.threads)?;
+        let threads = set_threads(self.many_runs.threads)?;
         let file = DesignFile::load(&self.design).map_err(Failure::input)?;
         let runs = self.runs.unwrap_or(file.keys.runs) as usize;
         // A design that is invalid or needs too much memory leaves no folder.
@@ -76,11 +71,14 @@ impl DesignCommand {
         let refused = file
             .has_curve()
             .then_some("the runs of a target curve are computed on the CPU alone");
-        let device = self.device.open(refused, self.quiet || self.json)?;
-        let out = self.out.unwrap_or_else(|| Path::new("results").join(file.name()));
+        let device = self.many_runs.device.open(refused, self.quiet || self.json)?;
+        let out = self
+            .out
+            .unwrap_or_else(|| Path::new("results").join(&file.project.name));
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let folder = DesignFolder::open(&out, &file, self.force.given).map_err(Failure::of_folder)?;
+        let folder =
+            DesignFolder::open(&out, &file, self.many_runs.force.given).map_err(Failure::from_folder)?;
         let mut folder = folder.on_device(device);
         let began = Instant::now();
         let most = self.time.map(|time| time.as_secs_f64());
@@ -94,17 +92,14 @@ impl DesignCommand {
         if !self.quiet && !self.json {
             print_notes(folder.notes());
         }
-        let mut progress = DesignProgress::new(self.quiet);
-        let found = folder.find(&bounds, &mut |now| progress.show(now));
+        let mut progress = ProgressDisplay::new(self.quiet);
+        let found = folder.find(&bounds, &mut |now| show_design(&mut progress, now));
         progress.finish();
         let text = found.map_err(|error| match error {
             StudyError::Interrupted => {
-                let best = folder.path().join("mask.npy");
+                let (out, best) = (out.display(), out.join("mask.npy"));
                 let so_far = if folder.has_verdict() {
-                    format!(
-                        "{} still contains the results of an earlier search; ",
-                        folder.path().display()
-                    )
+                    format!("{out} still contains the results of an earlier search; ")
                 } else if best.exists() {
                     format!(
                         "the best texture so far is in {}, without a verdict; ",
@@ -114,10 +109,10 @@ impl DesignCommand {
                     String::new()
                 };
                 let sentence = format!("stopped by a signal: {so_far}the same command resumes from there");
-                Failure::stopped(&signals, anyhow::anyhow!(sentence))
+                Failure::stopped(&signals, sentence)
             }
             StudyError::NoDesign { .. } => Failure::input(error),
-            error => Failure::of_results(&signals, error),
+            error => Failure::from_results(&signals, error),
         })?;
         if self.json {
             print_file(&folder.numbers())?;
@@ -131,8 +126,8 @@ impl DesignCommand {
     fn plan(&self, file: &DesignFile, runs: usize, threads: usize) -> Result<(), Failure> {
         let plan = file.plan(runs, threads).map_err(Failure::input)?;
         if self.json {
-            return print(&text_of(&serde_json::to_value(&plan).map_err(Failure::running)?));
+            return print_json(&plan);
         }
-        print(&report::design(&plan, threads))
+        print(&design(&plan, threads))
     }
 }

@@ -6,12 +6,12 @@ use clap::Args;
 use slipfront_calibrate::CALIBRATIONS;
 use slipfront_design::DESIGNS;
 use slipfront_run::export::{Attribution, Author, ExportError, Licence, bibtex, cff, write_crate};
-use slipfront_study::{ExportFolderError, exported};
+use slipfront_study::{StudyError, exported};
 
 use crate::failure::Failure;
 use crate::print::{print, print_message};
 use crate::signals::Signals;
-use crate::wrap;
+use crate::wrap::notes;
 
 /// Export results to a data repository, or print their citations
 ///
@@ -69,7 +69,7 @@ impl ExportCommand {
         };
         let results = self.folders.iter().map(|folder| {
             exported(folder, &[DESIGNS, CALIBRATIONS]).map_err(|error| match error {
-                ExportFolderError::Results(error) => failure(error),
+                StudyError::Export(error) => failure(error),
                 error => Failure::input(error),
             })
         });
@@ -87,9 +87,7 @@ impl ExportCommand {
             error => failure(error),
         })?;
         print_message(&format!("{}\n", path.display()));
-        for note in by.notes() {
-            print_message(&wrap::note(note));
-        }
+        print_message(&notes(by.notes()));
         Ok(())
     }
 }
@@ -97,9 +95,8 @@ impl ExportCommand {
 /// Changed results and disks that cannot be written are failures of the work; all other errors are errors of
 /// the input.
 fn failure(error: ExportError) -> Failure {
-    if matches!(error, ExportError::Changed { .. } | ExportError::Write { .. }) {
-        Failure::running(error)
-    } else {
-        Failure::input(error)
+    match error {
+        ExportError::Changed { .. } | ExportError::Write { .. } => Failure::running(error),
+        error => Failure::input(error),
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use slipfront_base::number_format::are;
 
+use super::paper::refuse_foreign_docs;
 use crate::failure::Failure;
 use crate::print::print_message;
 use crate::signals::Signals;
@@ -30,13 +31,7 @@ pub(crate) struct FamilyCommand {
 impl FamilyCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_worker_threads(self.threads, 1)?;
-        if let Some(path) = self.docs.as_deref().and_then(slipfront_family::foreign_docs) {
-            let remedy = "move it away, or choose another folder with --docs";
-            return Err(Failure::input(anyhow::anyhow!(
-                "{} was not written by an earlier call: {remedy}",
-                path.display()
-            )));
-        }
+        refuse_foreign_docs(self.docs.as_deref().and_then(slipfront_family::foreign_docs))?;
         let books = slipfront_family::books(self.long).map_err(Failure::running)?;
         print_message(&slipfront_family::summary(&books));
         if let Some(docs) = &self.docs {
@@ -48,7 +43,7 @@ impl FamilyCommand {
         let answers = chapters.flat_map(|chapter| &chapter.answers);
         match answers.filter(|answer| !answer.holds()).count() {
             0 => Ok(()),
-            missed => Err(Failure::running(anyhow::anyhow!(
+            missed => Err(Failure::running(format!(
                 "{} out of tolerance",
                 are(missed, "answer")
             ))),

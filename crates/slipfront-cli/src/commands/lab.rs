@@ -13,10 +13,9 @@ use super::licences::NOTICES;
 use crate::browser;
 use crate::failure::Failure;
 use crate::print::print_message;
-use crate::print_stderr::print_stderr;
+use crate::print_stderr::{print_notes, print_stderr};
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
-use crate::wrap::for_stderr;
 
 /// Open the interactive laboratory in a browser
 ///
@@ -68,14 +67,11 @@ impl LabCommand {
         // This comes first, because a large case is made on these threads.
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = set_worker_threads(Some(self.threads.unwrap_or((cores as u16 - 1).max(1))), 1)?;
-        let link = self
-            .case
-            .as_deref()
-            .and_then(|case| case.split_once(LINK))
-            .map(|(_, link)| link);
+        let parts = self.case.as_deref().and_then(|case| case.split_once(LINK));
+        let link = parts.map(|(_, link)| link);
         let start = match &self.case {
             Some(case) if link.is_none() => {
-                Start::of(Path::new(case), &self.allow_files).map_err(Failure::input)?
+                Start::read(Path::new(case), &self.allow_files).map_err(Failure::input)?
             }
             _ => Start::default(),
         };
@@ -93,45 +89,33 @@ impl LabCommand {
             patience: Patience::default(),
         });
         let laboratory = laboratory.map_err(|error| {
-            Failure::input(anyhow::anyhow!(
+            Failure::input(format!(
                 "cannot listen on port {} of 127.0.0.1 ({error}): choose another one with --port",
                 self.port
             ))
         })?;
         // Anyone with the address can use the laboratory. The file is removed when this value is dropped,
         // after the server has ended.
-        let file = if others_read_output() {
-            let file = laboratory.address_file(link);
-            Some(file.map_err(|error| {
-                Failure::running(anyhow::anyhow!(
-                    "other users can read standard output, and the address cannot be written to a private file ({error}): free \
-                     some space in {}, or use `chmod 600` on the output",
-                    std::env::temp_dir().display()
-                ))
-            })?)
-        } else {
-            None
+        let file = others_read_output().then(|| laboratory.address_file(link));
+        let file = file.transpose().map_err(|error| {
+            Failure::running(format!(
+                "other users can read standard output, and the address cannot be written to a private file ({error}): free some \
+                 space in {}, or use `chmod 600` on the output",
+                std::env::temp_dir().display()
+            ))
+        })?;
+        let (address, which) = match &file {
+            Some(file) => (file.path().display().to_string(), "the address in that file"),
+            None => (laboratory.address(link), "this address"),
         };
-        let address = file.as_ref().map_or_else(
-            || laboratory.address(link),
-            |file| file.path().display().to_string(),
-        );
         print_message(&format!("The laboratory is open until Ctrl-C: {address}\n"));
-        if file.is_some() {
-            let note =
-                "note: other users can read this output, so the address is in a file that only you can read";
-            print_stderr(&for_stderr(note));
-        }
+        let readable = "other users can read this output, so the address is in a file that only you can read";
+        print_notes(file.is_some().then(|| readable.to_owned()));
         if !self.no_open
             && let Err(reason) = start_browser(&laboratory, link)
         {
-            let address = if file.is_some() {
-                "the address in that file"
-            } else {
-                "this address"
-            };
-            let note = format!("note: no browser was started, because {reason}: open {address} in a browser");
-            print_stderr(&for_stderr(&note));
+            let note = format!("no browser was started, because {reason}: open {which} in a browser");
+            print_notes([note]);
         }
         laboratory.serve(stopped(&signals)).map_err(Failure::running)
     }

@@ -31,7 +31,7 @@ impl ManCommand {
                     [] => format!("`{}` has no subcommands", command.get_name()),
                     names => format!("there is no subcommand {word:?}: it can be {}", names.join(", ")),
                 };
-                Failure::input(anyhow::anyhow!(sentence))
+                Failure::input(sentence)
             })?;
         }
         let mut page = Vec::new();

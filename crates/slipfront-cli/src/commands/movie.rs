@@ -139,7 +139,7 @@ impl MovieCommand {
         }
         expect_memory(movie::memory(folder).map_err(Failure::input)?)?;
         let kept = movie::of_run(RunFiles::Folder(folder), self.field).map_err(Failure::input)?;
-        let n_kept = kept.as_ref().map_or(0, |movie| movie.frames.len());
+        let n_kept = kept.as_ref().map_or(0, |movie| movie.snapshots.maps.len());
         let more = self.case_of_more(&run, n_kept).map_err(Failure::input)?;
         let movie = match more {
             Some((case, frames)) => {
@@ -167,7 +167,7 @@ impl MovieCommand {
             bytes
         };
         write_atomic(&out, &bytes)
-            .map_err(|error| Failure::running(anyhow::anyhow!("cannot write {}: {error}", out.display())))?;
+            .map_err(|error| Failure::running(format!("cannot write {}: {error}", out.display())))?;
         let hundredths: u64 = delays.iter().map(|delay| u64::from(*delay)).sum();
         let [width, height] = self.size().pixels();
         print_message(&format!(
@@ -249,12 +249,12 @@ impl MovieCommand {
 }
 
 fn refused(sentence: String) -> Failure {
-    Failure::input(anyhow::anyhow!(sentence))
+    Failure::input(sentence)
 }
 
 /// Makes an MP4 file of the movie of a run folder, with ffmpeg.
 fn mp4(run: &Path, movie: &Movie, size: MovieSize, delays: &[u16]) -> Result<Vec<u8>, Failure> {
-    let failed = |error: std::io::Error| Failure::running(anyhow::anyhow!("cannot make the movie: {error}"));
+    let failed = |error: std::io::Error| Failure::running(format!("cannot make the movie: {error}"));
     // Players want the index at the beginning of an MP4 file, which cannot be written through a pipe.
     let signals = Signals::catch().map_err(failed)?;
     let folder = TemporaryFolder::new(run).map_err(failed)?;
@@ -322,13 +322,13 @@ fn feed(
     });
     drop(pipe);
     let ended = child.wait_with_output();
-    let ended = ended.map_err(|error| Failure::running(anyhow::anyhow!("cannot run ffmpeg: {error}")))?;
+    let ended = ended.map_err(|error| Failure::running(format!("cannot run ffmpeg: {error}")))?;
     Failure::if_stopped(signals)?;
     if ended.status.success() && fed.is_ok() {
         return Ok(());
     }
     let said = String::from_utf8_lossy(&ended.stderr);
-    Err(Failure::running(anyhow::anyhow!(
+    Err(Failure::running(format!(
         "ffmpeg could not make the movie: {}",
         slipfront_base::text::single_line(said.trim())
     )))

@@ -10,9 +10,10 @@ use slipfront_study::project_folder::ResultFiles;
 use slipfront_study::{RunJournal, is_study};
 
 use crate::failure::Failure;
-use crate::force::ForceArg;
 use crate::print::print_message;
-use crate::progress::paper::PaperProgress;
+use crate::progress::display::ProgressDisplay;
+use crate::progress::paper::{PAPER_BAR, show_paper};
+use crate::runs_args::ForceArg;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_worker_threads};
 
@@ -52,9 +53,7 @@ impl PaperCommand {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = set_worker_threads(self.threads, 1)?;
         let figures = slipfront_paper::figures(&self.figures).map_err(Failure::input)?;
-        if let Some(docs) = &self.docs {
-            refuse_foreign(docs)?;
-        }
+        refuse_foreign_docs(self.docs.as_deref().and_then(slipfront_paper::foreign_docs))?;
         let records = open(&self.out)?;
         let files = ResultFiles::new(&self.out, "paper", self.force.given);
         files.expect_unedited().map_err(Failure::input)?;
@@ -65,9 +64,9 @@ impl PaperCommand {
             reduced: self.reduced,
             folder: &self.out,
         };
-        let progress = PaperProgress::new(self.quiet);
+        let progress = ProgressDisplay::with_bar(PAPER_BAR, self.quiet);
         let done = slipfront_paper::run(&figures, &records, &options, &|stage| {
-            progress.show(stage);
+            show_paper(&progress, stage);
         });
         progress.finish();
         let paper = done.map_err(|error| {
@@ -79,7 +78,7 @@ impl PaperCommand {
         })?;
         let sources = slipfront_paper::sources(&self.out, &records).map_err(Failure::running)?;
         slipfront_paper::write(&paper, &files, sources).map_err(|error| match error {
-            PaperError::Study(error) => Failure::of_results(&signals, error),
+            PaperError::Study(error) => Failure::from_results(&signals, error),
             error => Failure::running(error),
         })?;
         if let Some(docs) = &self.docs {
@@ -91,7 +90,7 @@ impl PaperCommand {
         }
         match paper.unexpected_verdicts().count() {
             0 => Ok(()),
-            unexpected => Err(Failure::running(anyhow::anyhow!(
+            unexpected => Err(Failure::running(format!(
                 "{} not as expected: see {}",
                 are(unexpected, "verdict"),
                 self.out.join("claims.csv").display()
@@ -100,22 +99,19 @@ impl PaperCommand {
     }
 }
 
-/// Refuses to replace pages that were not written by an earlier call.
-fn refuse_foreign(docs: &Path) -> Result<(), Failure> {
-    let Some(path) = slipfront_paper::foreign_docs(docs) else {
-        return Ok(());
-    };
-    let remedy = "move it away, or choose another folder with --docs";
-    Err(Failure::input(anyhow::anyhow!(
-        "{} was not written by an earlier call: {remedy}",
-        path.display()
+/// Refuses to replace a page that was not written by an earlier call.
+pub(super) fn refuse_foreign_docs(page: Option<PathBuf>) -> Result<(), Failure> {
+    let Some(page) = page else { return Ok(()) };
+    Err(Failure::input(format!(
+        "{} was not written by an earlier call: move it away, or choose another folder with --docs",
+        page.display()
     )))
 }
 
 /// Opens the records of an earlier call, or creates them in an empty folder.
 fn open(folder: &Path) -> Result<RunJournal, Failure> {
     let unusable = |error: std::io::Error| {
-        Failure::input(anyhow::anyhow!(
+        Failure::input(format!(
             "cannot use the folder {}: {error}; choose another with --out",
             folder.display()
         ))
@@ -124,7 +120,7 @@ fn open(folder: &Path) -> Result<RunJournal, Failure> {
     let used = folder.join(RunJournal::FILE).exists() && !is_study(folder);
     if !used && !is_empty(folder).map_err(unusable)? {
         let sentence = "contains files other than figures of the paper: choose another with --out";
-        return Err(Failure::input(anyhow::anyhow!(
+        return Err(Failure::input(format!(
             "the folder {} {sentence}",
             folder.display()
         )));

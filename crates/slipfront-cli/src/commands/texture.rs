@@ -11,7 +11,7 @@ use crate::case_args::CaseArgs;
 use crate::failure::Failure;
 use crate::print::print_message;
 use crate::ranks::CommandRanks;
-use crate::report;
+use crate::report::physics;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
@@ -52,39 +52,34 @@ impl TextureCommand {
             .iter()
             .find(|input| is_same(&input.original, &self.out));
         if let Some(input) = input {
-            let sentence = format!(
+            return Err(Failure::input(format!(
                 "the texture would replace {}, an input of the case: choose another name",
                 input.original.display()
-            );
-            return Err(Failure::input(anyhow::anyhow!(sentence)));
+            )));
         }
         // A broken link also counts as an existing file, although `exists` does not see it.
         if self.out.symlink_metadata().is_ok() && !self.force {
-            let sentence = format!(
+            return Err(Failure::input(format!(
                 "{} exists: choose another name, or replace it with --force",
                 self.out.display()
-            );
-            return Err(Failure::input(anyhow::anyhow!(sentence)));
+            )));
         }
-        let failed = |error: texture_file::TextureFileError| {
-            if error.is_input() {
-                Failure::input(error)
-            } else {
-                Failure::running(error)
-            }
-        };
         let smallest = texture_file::smallest(&case).map_err(Failure::input)?;
         let options = Options {
             scale: self.scale.map(usize::from),
             depth: self.depth,
         };
-        let said = texture_file::write(&case, &self.out, options).map_err(failed)?;
+        let said =
+            texture_file::write(&case, &self.out, options).map_err(|error| match error.is_input() {
+                true => Failure::input(error),
+                false => Failure::running(error),
+            })?;
         let covered = if case.file.texture.is_empty() {
             "the case has no texture: every block is in contact".to_owned()
         } else {
-            report::texture(&case)
+            physics::texture(&case)
         };
-        let covered = covered + &report::smallest(&case, smallest, &said);
+        let covered = covered + &physics::smallest(&case, smallest, &said);
         print_message(&format!("{covered}\n{}\n", self.out.display()));
         Ok(())
     }

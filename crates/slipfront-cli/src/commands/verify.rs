@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde::Serialize;
 use serde_json::{Value, json};
 use slipfront_base::number_format::count;
 use slipfront_base::text::truncated;
@@ -17,15 +18,14 @@ use slipfront_run::pictures::error::RunPictureError;
 use slipfront_run::program;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::inspection::{CaseDefect, Inspection};
-use slipfront_run::verify::{Verdict, differences, inspect, verify_run};
+use slipfront_run::verify::{FolderCheck, differences, inspect, verify_run};
 use slipfront_study::is_of_figures;
 use slipfront_study::project_folder::Extent;
 use slipfront_study::verify::{has_records, verify};
 
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::{print, print_json};
 use crate::print_stderr::print_stderr;
-use crate::report::text_of;
 use crate::run_again::{RunAgain, case_to_run, of_file};
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
@@ -85,7 +85,7 @@ impl VerifyCommand {
         if self.json {
             let folders = self.folders.iter().zip(&found);
             let folders: Vec<_> = folders.map(|(folder, found)| found.to_json(folder)).collect();
-            print(&text_of(&json!({ "folders": folders })))?;
+            print_json(&json!({ "folders": folders }))?;
         }
         outcome(&found)
     }
@@ -94,60 +94,64 @@ impl VerifyCommand {
     /// are still verified.
     fn look_at(&self, folder: &Path, signals: &Signals) -> Result<Finding, Failure> {
         if holds_pictures_alone(folder) {
-            let verdict = Verdict {
+            let check = FolderCheck {
                 what: "only pictures, without recorded results".to_owned(),
-                ..Verdict::default()
+                ..FolderCheck::default()
             };
-            return Ok(Finding::of(verdict, Status::Pictures));
+            return Ok(Finding {
+                status: Status::Pictures,
+                check,
+                error: None,
+            });
         }
-        let mut verdict = Verdict::default();
-        let error = match self.verify(folder, signals, &mut verdict) {
+        let mut check = FolderCheck::default();
+        let error = match self.verify(folder, signals, &mut check) {
             Ok(()) => None,
             Err(Failure::Input(error)) => Some(error.to_string()),
             Err(failure) => return Err(failure),
         };
         if self.checksums {
-            verdict.not_derived = None;
+            check.not_derived = None;
         }
-        let status = match &verdict {
-            _ if error.is_some() => Status::Unusable,
-            Verdict { differences, .. } if !differences.is_empty() => Status::Different,
-            Verdict { not_derived, .. } if not_derived.is_some() => Status::NotDerived,
-            _ => Status::Unchanged,
+        let status = if error.is_some() {
+            Status::Unusable
+        } else if !check.differences.is_empty() {
+            Status::Different
+        } else if check.not_derived.is_some() {
+            Status::NotDerived
+        } else {
+            Status::Unchanged
         };
-        Ok(Finding {
-            error,
-            ..Finding::of(verdict, status)
-        })
+        Ok(Finding { status, check, error })
     }
 
-    fn verify(&self, folder: &Path, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
-        if self.rerun && has_records(folder) {
-            return Err(Failure::input(anyhow::anyhow!(
-                "{} is the folder of a study: --rerun repeats only single runs, such as those in its folder runs/",
-                folder.display()
-            )));
+    fn verify(&self, folder: &Path, signals: &Signals, check: &mut FolderCheck) -> Result<(), Failure> {
+        if self.rerun {
+            if has_records(folder) {
+                return Err(Failure::input(format!(
+                    "{} is the folder of a study: --rerun repeats only single runs, such as those in its folder runs/",
+                    folder.display()
+                )));
+            }
+            let run = inspect(folder).map_err(Failure::input)?;
+            *check = verify_run(&run, &signals.stop).map_err(Failure::input)?;
+            return self.repeat(&run, signals, check);
         }
-        if !self.rerun {
-            let extent = if self.checksums {
-                Extent::Checksums
-            } else {
-                Extent::Derived
-            };
-            *verdict = if is_of_figures(folder) {
-                verify_paper(folder, extent, &signals.stop).map_err(Failure::input)?
-            } else {
-                verify(folder, &[DESIGNS, CALIBRATIONS], extent, &signals.stop).map_err(Failure::input)?
-            };
-            return Ok(());
-        }
-        let run = inspect(folder).map_err(Failure::input)?;
-        *verdict = verify_run(&run, &signals.stop).map_err(Failure::input)?;
-        self.repeat(&run, signals, verdict)
+        let extent = if self.checksums {
+            Extent::Checksums
+        } else {
+            Extent::Derived
+        };
+        *check = if is_of_figures(folder) {
+            verify_paper(folder, extent, &signals.stop).map_err(Failure::input)?
+        } else {
+            verify(folder, &[DESIGNS, CALIBRATIONS], extent, &signals.stop).map_err(Failure::input)?
+        };
+        Ok(())
     }
 
-    /// Runs the case of a folder again in a temporary folder, and adds the differences to the verdict.
-    fn repeat(&self, run: &Inspection, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
+    /// Runs the case of a folder again in a temporary folder, and adds the differences to the check.
+    fn repeat(&self, run: &Inspection, signals: &Signals, check: &mut FolderCheck) -> Result<(), Failure> {
         let (started, folder) = (clock::now(), run.path.as_path());
         let case = case_to_run(folder, signals, self.quiet, |watch| match &run.case {
             Ok(file) => of_file(file.clone(), folder, watch),
@@ -164,19 +168,16 @@ impl VerifyCommand {
         } = RunAgain::run(case, folder, signals, self.quiet)?;
         let before = run.manifest().ok();
         let now = complete_as(before, &case, made, started).map_err(Failure::running)?;
-        verdict
-            .differences
-            .extend(differences(&now.files, folder, "are written now", &signals.stop));
+        let found = &mut check.differences;
+        found.extend(differences(&now.files, folder, "are written now", &signals.stop));
         if let Some(before) = before {
-            verdict
-                .differences
-                .extend(no_longer_written(before, &now, folder));
+            found.extend(no_longer_written(before, &now, folder));
             if before.build != program::this_build() {
                 let mut programs = (before.program(), program::this_program());
                 if programs.0 == programs.1 {
                     programs = (truncated(&before.build), program::this_build().to_owned());
                 }
-                verdict.notes.push(format!(
+                check.notes.push(format!(
                     "{} was written by {}, and repeated by {}",
                     folder.display(),
                     programs.0,
@@ -184,33 +185,23 @@ impl VerifyCommand {
                 ));
             }
         }
-        verdict.what += "; the same when repeated";
+        check.what += "; the same when repeated";
         Ok(())
     }
 
     fn report(&self, folder: &Path, found: &Finding) -> String {
-        let mut text = String::new();
-        for difference in &found.verdict.differences {
-            text += &format!("{difference}\n");
-        }
+        let (check, folder) = (&found.check, folder.display());
+        let differences = check.differences.iter();
+        let text: String = differences.map(|difference| format!("{difference}\n")).collect();
         if self.quiet {
             return text;
         }
-        let Verdict {
-            what,
-            notes,
-            not_derived,
-            ..
-        } = &found.verdict;
-        match found.status {
-            Status::Pictures => text += &wrap::note(&format!("{} holds {what}", folder.display())),
-            Status::Unchanged | Status::NotDerived => text += &format!("{}: {what}\n", folder.display()),
-            Status::Different | Status::Unusable => {}
-        }
-        for note in notes.iter().chain(not_derived) {
-            text += &wrap::note(note);
-        }
-        text
+        let outcome = match found.status {
+            Status::Pictures => wrap::note(&format!("{folder} holds {}", check.what)),
+            Status::Unchanged | Status::NotDerived => format!("{folder}: {}\n", check.what),
+            Status::Different | Status::Unusable => String::new(),
+        };
+        text + &outcome + &wrap::notes(check.notes.iter().chain(&check.not_derived))
     }
 }
 
@@ -221,18 +212,18 @@ fn outcome(found: &[Finding]) -> Result<(), Failure> {
     let different = n(Status::Different);
     let differ = if different == 1 { "differs" } else { "differ" };
     match (n(Status::Unusable), different, n(Status::NotDerived)) {
-        (0, 0, _) if n(Status::Pictures) == found.len() => Err(Failure::input(anyhow::anyhow!(
-            "there is nothing to verify: give folders of runs or studies"
-        ))),
+        (0, 0, _) if n(Status::Pictures) == found.len() => Err(Failure::input(
+            "there is nothing to verify: give folders of runs or studies",
+        )),
         (0, 0, 0) => Ok(()),
-        (0, 0, not_derived) => Err(Failure::running(anyhow::anyhow!(
+        (0, 0, not_derived) => Err(Failure::running(format!(
             "{not_derived} {of_all} {} as written, and could not be computed again: use --checksums to skip this",
             if not_derived == 1 { "is" } else { "are" }
         ))),
-        (0, _, _) => Err(Failure::running(anyhow::anyhow!(
+        (0, _, _) => Err(Failure::running(format!(
             "{different} {of_all} {differ} from what was written"
         ))),
-        (unusable, _, _) => Err(Failure::input(anyhow::anyhow!(
+        (unusable, _, _) => Err(Failure::input(format!(
             "{unusable} {of_all} cannot be verified, {different} {differ}"
         ))),
     }
@@ -241,34 +232,28 @@ fn outcome(found: &[Finding]) -> Result<(), Failure> {
 /// The result of verifying a folder.
 struct Finding {
     status: Status,
-    verdict: Verdict,
+    check: FolderCheck,
     /// Reason why the folder cannot be verified.
     error: Option<String>,
 }
 
 impl Finding {
-    fn of(verdict: Verdict, status: Status) -> Self {
-        Self {
-            status,
-            verdict,
-            error: None,
-        }
-    }
-
     fn to_json(&self, folder: &Path) -> Value {
         json!({
             "folder": folder.display().to_string(),
-            "status": self.status.name(),
-            "what": self.verdict.what,
-            "differences": self.verdict.differences,
-            "notes": self.verdict.notes,
-            "not_derived": self.verdict.not_derived,
+            "status": self.status,
+            "what": self.check.what,
+            "differences": self.check.differences,
+            "notes": self.check.notes,
+            "not_derived": self.check.not_derived,
             "error": self.error,
         })
     }
 }
 
-#[derive(Clone, Copy, PartialEq)]
+/// Outcome for a folder, by its name in JSON.
+#[derive(Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 enum Status {
     /// All files are as they were written.
     Unchanged,
@@ -282,32 +267,19 @@ enum Status {
     Unusable,
 }
 
-impl Status {
-    /// Name in JSON.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Unchanged => "unchanged",
-            Self::NotDerived => "not_derived",
-            Self::Different => "different",
-            Self::Pictures => "pictures",
-            Self::Unusable => "unusable",
-        }
-    }
-}
-
 /// Whether a folder contains only pictures or movies, as `slipfront plot` writes it.
 fn holds_pictures_alone(folder: &Path) -> bool {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return false;
     };
-    let mut names = entries
-        .map(|entry| entry.map_or_else(|_| PathBuf::new(), |entry| PathBuf::from(entry.file_name())))
-        .peekable();
-    let is_picture = |name: &PathBuf| {
-        let ending = name.extension().and_then(|ending| ending.to_str());
-        ending.is_some_and(|ending| ["svg", "png", "pdf", "eps", "gif", "mp4"].contains(&ending))
-    };
-    names.peek().is_some() && names.all(|name| is_picture(&name))
+    let endings: Vec<_> = entries
+        .map(|entry| entry.ok()?.path().extension()?.to_str().map(str::to_owned))
+        .collect();
+    let is_picture = |ending: &str| ["svg", "png", "pdf", "eps", "gif", "mp4"].contains(&ending);
+    !endings.is_empty()
+        && endings
+            .iter()
+            .all(|ending| ending.as_deref().is_some_and(is_picture))
 }
 
 /// Completes the folder of a repeated run, with pictures unless the first run was without them.

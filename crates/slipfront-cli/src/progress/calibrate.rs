@@ -6,22 +6,9 @@ use slipfront_calibrate::{CalibrationProgress, CalibrationStage};
 
 use super::display::{ProgressDisplay, time_left};
 
-/// Display of the progress of a calibration.
-pub(crate) struct CalibrateProgress(ProgressDisplay);
-
-impl CalibrateProgress {
-    pub(crate) fn new(quiet: bool) -> Self {
-        Self(ProgressDisplay::new("{wide_bar} {msg}", quiet))
-    }
-
-    pub(crate) fn show(&mut self, now: &CalibrationProgress) {
-        self.0
-            .show(now.runs as u64, now.of as u64, |passed| text(now, passed));
-    }
-
-    pub(crate) fn finish(&self) {
-        self.0.finish();
-    }
+/// Shows the progress of a calibration.
+pub(crate) fn show_calibration(display: &mut ProgressDisplay, now: &CalibrationProgress) {
+    display.show(now.runs as u64, now.total as u64, |passed| text(now, passed));
 }
 
 /// Progress line: runs done, time left, and purpose of the runs.
@@ -37,8 +24,8 @@ fn text(now: &CalibrationProgress, passed: Duration) -> String {
         CalibrationStage::OtherStep => "another time step",
         CalibrationStage::Planning => "planned experiments",
     };
-    let left = time_left((now.of - now.runs) as u64, now.runs as u64, passed);
-    format!("{} of {} runs{left}  {stage}", now.runs, now.of)
+    let left = time_left((now.total - now.runs) as u64, now.runs as u64, passed);
+    format!("{} of {} runs{left}  {stage}", now.runs, now.total)
 }
 
 #[cfg(test)]
@@ -50,7 +37,7 @@ mod tests {
         let now = CalibrationProgress {
             stage: CalibrationStage::FinerBlocks,
             runs: 50,
-            of: 100,
+            total: 100,
         };
         let text = text(&now, Duration::from_secs(10));
         assert!(

@@ -7,27 +7,10 @@ use slipfront_design::{DesignStage, SearchProgress};
 
 use super::display::{ProgressDisplay, duration_left};
 
-/// Display of the progress of a design.
-pub(crate) struct DesignProgress {
-    display: ProgressDisplay,
-}
-
-impl DesignProgress {
-    pub(crate) fn new(quiet: bool) -> Self {
-        Self {
-            display: ProgressDisplay::new("{wide_bar} {msg}", quiet),
-        }
-    }
-
-    pub(crate) fn show(&mut self, now: &SearchProgress) {
-        let share = now.work.here / (now.work.here + now.work.left);
-        self.display
-            .show((1000.0 * share) as u64, 1000, |passed| text(now, passed));
-    }
-
-    pub(crate) fn finish(&self) {
-        self.display.finish();
-    }
+/// Shows the progress of a design.
+pub(crate) fn show_design(display: &mut ProgressDisplay, now: &SearchProgress) {
+    let share = now.work.here / (now.work.here + now.work.left);
+    display.show((1000.0 * share) as u64, 1000, |passed| text(now, passed));
 }
 
 /// Progress line: runs done of this stage, time left for search and verdict, the stage, and the best value so
@@ -40,20 +23,18 @@ fn text(now: &SearchProgress, passed: Duration) -> String {
         DesignStage::Refining => "several surfaces",
         DesignStage::Judging => "verdict",
     };
-    let best = if now.best.is_finite() {
-        format!("  best {}", four_digits(now.best))
-    } else {
-        String::new()
+    let best = match now.best {
+        best if best.is_finite() => format!("  best {}", four_digits(best)),
+        _ => String::new(),
     };
-    let rejected = if now.rejected == 0 {
-        String::new()
-    } else {
-        format!("  {} rejected", count(now.rejected, "draft"))
+    let rejected = match now.rejected {
+        0 => String::new(),
+        rejected => format!("  {} rejected", count(rejected, "draft")),
     };
     format!(
         "{} of {} runs{left}  {stage}{best}{rejected}",
-        now.runs.min(now.of),
-        now.of
+        now.runs.min(now.total),
+        now.total
     )
 }
 
@@ -68,7 +49,7 @@ mod tests {
     fn the_best_so_far_and_the_time_left_are_shown() {
         let now = |here: f64| SearchProgress {
             runs: 50,
-            of: 100,
+            total: 100,
             textures: 20,
             rejected: 0,
             stage: DesignStage::Exploring,

@@ -11,64 +11,63 @@ use crate::wrap::for_stderr;
 /// Display of the progress of some work.
 pub(crate) struct ProgressDisplay {
     began: Instant,
-    sink: Sink,
-}
-
-enum Sink {
-    /// No display, because the user asked for quiet, or another process prints for this one.
-    Silent,
-    Bar(ProgressBar),
-    /// Plain lines, and the time at which the next one is due.
-    Lines(Instant),
+    /// Hidden unless stderr is a terminal.
+    bar: ProgressBar,
+    /// Time at which the next plain line is due; none if there are no lines, because there is a bar, the user
+    /// asked for quiet, or another process prints for this one.
+    next_line: Option<Instant>,
 }
 
 impl ProgressDisplay {
+    /// Makes a display with a bar and a text.
+    pub(crate) fn new(quiet: bool) -> Self {
+        Self::with_bar("{wide_bar} {msg}", quiet)
+    }
+
     /// Makes a display; `template` is the template of its bar, in the format of indicatif.
-    pub(crate) fn new(template: &str, quiet: bool) -> Self {
-        let began = Instant::now();
-        let sink = if quiet || is_silent() {
-            Sink::Silent
-        } else if !std::io::stderr().is_terminal() {
-            Sink::Lines(began + pause(Duration::ZERO))
+    pub(crate) fn with_bar(template: &str, quiet: bool) -> Self {
+        let (began, shows) = (Instant::now(), !quiet && !is_silent());
+        let is_terminal = std::io::stderr().is_terminal();
+        let bar = if shows && is_terminal {
+            ProgressBar::new(0)
         } else {
-            let bar = ProgressBar::new(0);
-            if let Ok(style) = ProgressStyle::with_template(template) {
-                bar.set_style(style.progress_chars("=> "));
-            }
-            Sink::Bar(bar)
+            ProgressBar::hidden()
         };
-        Self { began, sink }
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        Self {
+            began,
+            bar,
+            next_line: (shows && !is_terminal).then(|| began + pause(Duration::ZERO)),
+        }
     }
 
     /// Moves the bar, or prints a line if one is due; `text` gets the time passed since the beginning.
     pub(crate) fn show(&mut self, done: u64, total: u64, text: impl FnOnce(Duration) -> String) {
-        let passed = self.began.elapsed();
-        match &mut self.sink {
-            Sink::Silent => {}
-            Sink::Bar(_) => self.move_bar(done, total, || text(passed)),
-            Sink::Lines(next) => {
-                let now = Instant::now();
-                if now >= *next {
-                    *next = now + pause(passed);
-                    print_stderr(&text(passed));
-                }
+        let (now, passed) = (Instant::now(), self.began.elapsed());
+        match &mut self.next_line {
+            Some(next) if now >= *next => {
+                *next = now + pause(passed);
+                print_stderr(&text(passed));
             }
+            _ => self.move_bar(done, total, || text(passed)),
         }
     }
 
     /// Moves the bar, if there is one.
     pub(crate) fn move_bar(&self, done: u64, total: u64, message: impl FnOnce() -> String) {
-        if let Sink::Bar(bar) = &self.sink {
-            bar.set_length(total);
-            bar.set_position(done);
-            bar.set_message(message());
+        if !self.bar.is_hidden() {
+            self.bar.set_length(total);
+            self.bar.set_position(done);
+            self.bar.set_message(message());
         }
     }
 
     /// Prints a line if progress is shown as lines.
-    pub(crate) fn print_line(&self, text: impl FnOnce() -> String) {
-        if let Sink::Lines(_) = self.sink {
-            print_stderr(&text());
+    pub(crate) fn print_line(&self, line: &str) {
+        if self.next_line.is_some() {
+            print_stderr(line);
         }
     }
 
@@ -76,17 +75,16 @@ impl ProgressDisplay {
     /// warnings.
     pub(crate) fn note(&self, text: &str) {
         let text = for_stderr(text);
-        match &self.sink {
-            Sink::Bar(bar) => bar.println(text),
-            Sink::Silent | Sink::Lines(_) => print_stderr(&text),
+        if self.bar.is_hidden() {
+            print_stderr(&text);
+        } else {
+            self.bar.println(text);
         }
     }
 
     /// Removes the bar.
     pub(crate) fn finish(&self) {
-        if let Sink::Bar(bar) = &self.sink {
-            bar.finish_and_clear();
-        }
+        self.bar.finish_and_clear();
     }
 }
 

@@ -2,9 +2,9 @@
 //! the paper.
 
 pub(crate) mod calibrate;
+pub(crate) mod case;
 pub(crate) mod design;
 pub(crate) mod display;
-pub(crate) mod mesh;
 pub(crate) mod paper;
 pub(crate) mod run;
 pub(crate) mod study;

@@ -16,8 +16,8 @@ pub(crate) struct RunProgress {
 
 /// The steps of a run.
 struct Steps {
-    /// Progress at which this process began.
-    first: Place,
+    /// Number of steps at which this process began, and of those in which the drive moved.
+    first: [u64; 2],
     /// Instant at which this process began.
     began: Instant,
     /// Number of steps in which the drive moves: all steps, unless the drive is held at times.
@@ -25,61 +25,37 @@ struct Steps {
     n_blocks: usize,
 }
 
-/// Progress of a run.
-#[derive(Clone, Copy)]
-struct Place {
-    /// Steps done.
-    step: u64,
-    /// Steps in which the drive moved.
-    drive_steps: u64,
-    /// Name of the measure of progress: t*, or the path of a held drive.
-    name: &'static str,
-    value: f64,
-}
-
-impl Place {
-    fn of(now: &Snapshot) -> Self {
-        let drive = &now.model.drive;
-        let (name, value) = if drive.is_held() {
-            ("X*", drive.path(now.drive_time_star))
-        } else {
-            ("t*", now.time_star)
-        };
-        Self {
-            step: now.step,
-            drive_steps: now.drive_steps,
-            name,
-            value,
-        }
-    }
-
-    fn text(&self, mu_star: f64) -> String {
-        format!("{} = {:.1}  mu* = {mu_star:.3}", self.name, self.value)
-    }
+/// Measure of progress, t* or the path of a held drive, and friction.
+fn state(now: &Snapshot) -> String {
+    let drive = &now.model.drive;
+    let (name, value) = if drive.is_held() {
+        ("X*", drive.path(now.drive_time_star))
+    } else {
+        ("t*", now.time_star)
+    };
+    format!("{name} = {value:.1}  mu* = {:.3}", now.point.mu_star)
 }
 
 impl RunProgress {
     /// Makes the display for a run that begins or is resumed at its present step.
     pub(crate) fn new(running: &Running, quiet: bool) -> Self {
         Self {
-            display: ProgressDisplay::new("{wide_bar} {msg}", quiet),
-            steps: running.search().is_none().then(|| Steps::of(running)),
+            display: ProgressDisplay::new(quiet),
+            steps: running.search().is_none().then(|| Steps::new(running)),
         }
     }
 
     pub(crate) fn show(&mut self, running: &Running) {
         if let Some(now) = running.search() {
-            let (place, mu_star) = (Place::of(&now), now.point.mu_star);
-            let text = |_| format!("loading until friction falls  {}", place.text(mu_star));
+            let text = |_| format!("loading until friction falls  {}", state(&now));
             self.display.show(0, 1, text);
             return;
         }
         let now = running.snapshot();
-        let (place, mu_star) = (Place::of(&now), now.point.mu_star);
-        let steps = self.steps.get_or_insert_with(|| Steps::of(running));
+        let steps = self.steps.get_or_insert_with(|| Steps::new(running));
         let passed = steps.began.elapsed();
         self.display.show(now.drive_steps, steps.last, |_| {
-            steps.text(place, mu_star, passed)
+            steps.text([now.step, now.drive_steps], &state(&now), passed)
         });
     }
 
@@ -94,28 +70,28 @@ impl RunProgress {
 }
 
 impl Steps {
-    fn of(running: &Running) -> Self {
-        let case = running.case();
+    fn new(running: &Running) -> Self {
+        let (now, case) = (running.snapshot(), running.case());
         Self {
-            first: Place::of(&running.snapshot()),
+            first: [now.step, now.drive_steps],
             began: Instant::now(),
             last: case.time_plan.last_step,
             n_blocks: case.model.lattice.n_blocks(),
         }
     }
 
-    /// Progress line of a run. The rate counts only the steps of this process, which has run for the time
-    /// `passed`.
-    fn text(&self, now: Place, mu_star: f64, passed: Duration) -> String {
-        let percent = 100.0 * now.drive_steps as f64 / self.last as f64;
-        let state = format!("{percent:3.0} %  {}", now.text(mu_star));
-        let here = now.drive_steps - self.first.drive_steps;
+    /// Progress line of a run in this state after some steps, in `drive_steps` of which the drive moved. The
+    /// rate counts only the steps of this process, which has run for the time `passed`.
+    fn text(&self, [step, drive_steps]: [u64; 2], state: &str, passed: Duration) -> String {
+        let percent = 100.0 * drive_steps as f64 / self.last as f64;
+        let [first_step, first_drive_step] = self.first;
+        let here = drive_steps - first_drive_step;
         if here == 0 {
-            return state;
+            return format!("{percent:3.0} %  {state}");
         }
-        let rate = (now.step - self.first.step) as f64 * self.n_blocks as f64 / passed.as_secs_f64();
-        let left = time_left(self.last - now.drive_steps, here, passed);
-        format!("{state}  {rate:.1e} block-steps/s{left}")
+        let rate = (step - first_step) as f64 * self.n_blocks as f64 / passed.as_secs_f64();
+        let left = time_left(self.last - drive_steps, here, passed);
+        format!("{percent:3.0} %  {state}  {rate:.1e} block-steps/s{left}")
     }
 }
 
@@ -123,12 +99,12 @@ impl Steps {
 mod tests {
     use super::*;
 
-    fn at(step: u64, time_star: f64) -> Place {
-        Place {
-            step,
-            drive_steps: step,
-            name: "t*",
-            value: time_star,
+    fn steps(first: u64, last: u64, n_blocks: usize) -> Steps {
+        Steps {
+            first: [first; 2],
+            began: Instant::now(),
+            last,
+            n_blocks,
         }
     }
 
@@ -136,54 +112,30 @@ mod tests {
     /// the steps of an earlier process.
     #[test]
     fn a_resumed_run_counts_its_own_steps() {
-        let steps = Steps {
-            first: at(8000, 800.0),
-            began: Instant::now(),
-            last: 10_000,
-            n_blocks: 60,
-        };
+        let steps = steps(8000, 10_000, 60);
+        let text = |step| steps.text([step; 2], "t* = 900.0  mu* = 0.512", Duration::from_secs(60));
         assert_eq!(
-            steps.text(at(9000, 900.0), 0.5123, Duration::from_secs(60)),
+            text(9000),
             " 90 %  t* = 900.0  mu* = 0.512  1.0e3 block-steps/s  60 seconds left"
         );
-        assert_eq!(
-            steps.text(at(8000, 800.0), 0.5123, Duration::from_secs(60)),
-            " 80 %  t* = 800.0  mu* = 0.512"
-        );
+        assert_eq!(text(8000), " 80 %  t* = 900.0  mu* = 0.512");
     }
 
-    /// A held drive shows its path: the drive was at rest in 2000 of 3000 steps.
+    /// The time left of a held drive follows from the steps in which it moves: it was at rest in 2000 of 3000
+    /// steps.
     #[test]
-    fn a_held_drive_shows_its_path() {
-        let steps = Steps {
-            first: at(0, 0.0),
-            began: Instant::now(),
-            last: 2000,
-            n_blocks: 60,
-        };
-        let now = Place {
-            step: 3000,
-            drive_steps: 1000,
-            name: "X*",
-            value: 3.04,
-        };
+    fn a_held_drive_counts_the_steps_in_which_it_moves() {
         assert_eq!(
-            steps.text(now, 0.5123, Duration::from_secs(60)),
-            " 50 %  X* = 3.0  mu* = 0.512  3.0e3 block-steps/s  60 seconds left"
+            steps(0, 2000, 60).text([3000, 1000], "X* = 3.0", Duration::from_secs(60)),
+            " 50 %  X* = 3.0  3.0e3 block-steps/s  60 seconds left"
         );
     }
 
     #[test]
     fn the_longest_text_fits_a_terminal() {
-        let steps = Steps {
-            first: at(0, 0.0),
-            began: Instant::now(),
-            last: 100_000_000_000,
-            n_blocks: 4_000_000_000,
-        };
-        let text = steps.text(
-            at(98_765_432_100, 123_456_789.1),
-            -0.345,
+        let text = steps(0, 100_000_000_000, 4_000_000_000).text(
+            [98_765_432_100; 2],
+            "t* = 123456789.1  mu* = -0.345",
             Duration::from_secs(59 * 3600),
         );
         assert!(text.chars().count() <= 78, "{text}");

@@ -7,22 +7,9 @@ use slipfront_study::Progress;
 
 use super::display::{ProgressDisplay, time_left};
 
-/// Display of the progress of a study.
-pub(crate) struct StudyProgress(ProgressDisplay);
-
-impl StudyProgress {
-    pub(crate) fn new(quiet: bool) -> Self {
-        Self(ProgressDisplay::new("{wide_bar} {msg}", quiet))
-    }
-
-    pub(crate) fn show(&mut self, now: &Progress) {
-        let (done, total) = (now.done as u64, now.total as u64);
-        self.0.show(done, total, |passed| text(now, passed));
-    }
-
-    pub(crate) fn finish(&self) {
-        self.0.finish();
-    }
+/// Shows the progress of a study.
+pub(crate) fn show_study(display: &mut ProgressDisplay, now: &Progress) {
+    display.show(now.done as u64, now.total as u64, |passed| text(now, passed));
 }
 
 /// Progress line: runs done, their rate in this process, which has run for the time `passed`, time left,

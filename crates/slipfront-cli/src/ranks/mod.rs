@@ -8,7 +8,7 @@ use std::sync::Arc;
 use slipfront::Communicator;
 use slipfront::communicator::Alone;
 use slipfront_base::machine::machine_number;
-use slipfront_case::same::{NamedInputs, expect_same, of_all};
+use slipfront_case::same_on_ranks::{NamedInputs, expect_same, of_all};
 use slipfront_run::agree::{RankFailure, agree};
 use slipfront_run::resume_command::resume_command;
 
@@ -83,9 +83,14 @@ impl CommandRanks {
 
     /// Whether `is_so` is true on any rank.
     pub(crate) fn any(&self, is_so: bool) -> bool {
-        let mut largest = [f64::from(is_so)];
+        self.largest_of(f64::from(is_so)) > 0.0
+    }
+
+    /// The maximum of a value over the ranks.
+    pub(crate) fn largest_of(&self, value: f64) -> f64 {
+        let mut largest = [value];
         self.largest(&mut largest);
-        largest[0] > 0.0
+        largest[0]
     }
 
     /// Replaces every value by its maximum over the ranks.

@@ -10,6 +10,19 @@ use crate::wrap::note;
 const MAX_ROWS: usize = 40;
 const MAX_NOTES: usize = 8;
 
+/// Columns of the table after those of the other axes.
+const COLUMNS: [&str; 9] = [
+    "friction",
+    "mean",
+    "anisotropy %",
+    "from",
+    "to",
+    "p",
+    "principal",
+    "lateral",
+    "at",
+];
+
 /// Rows for static and kinetic friction at all levels of the other axes; empty if no axis varies the
 /// direction.
 pub(crate) fn anisotropy(plan: &Plan, results: &StudyResults) -> String {
@@ -17,20 +30,8 @@ pub(crate) fn anisotropy(plan: &Plan, results: &StudyResults) -> String {
     let Some(first) = all.first() else {
         return String::new();
     };
-    let levels = first.levels.iter().map(|(column, _)| column.as_str());
-    let header: Vec<&str> = levels
-        .chain([
-            "friction",
-            "mean",
-            "anisotropy %",
-            "from",
-            "to",
-            "p",
-            "principal",
-            "lateral",
-            "at",
-        ])
-        .collect();
+    let mut header: Vec<&str> = first.levels.iter().map(|(column, _)| column.as_str()).collect();
+    header.extend(COLUMNS);
     let with_numbers = all.iter().filter_map(|row| Some((row, row.found.as_ref().ok()?)));
     let rows: Vec<Vec<String>> = with_numbers.map(|(row, found)| cells(row, found)).collect();
     let shown = rows.len().min(MAX_ROWS);
@@ -63,14 +64,13 @@ fn notes(all: &[Anisotropy]) -> String {
         let levels: String = levels.collect();
         (!parts.is_empty()).then(|| note(&format!("{}{levels}: {}", row.quantity, parts.join("; "))))
     };
-    let notes: Vec<String> = all.iter().filter_map(sentence).collect();
-    let more = match notes.len().saturating_sub(MAX_NOTES) {
-        0 => String::new(),
-        more => note(&format!(
-            "and {more} similar notes; anisotropy.csv contains all results"
-        )),
-    };
-    notes.into_iter().take(MAX_NOTES).chain([more]).collect()
+    let mut notes: Vec<String> = all.iter().filter_map(sentence).collect();
+    if notes.len() > MAX_NOTES {
+        let more = notes.split_off(MAX_NOTES).len();
+        let more = format!("and {more} similar notes; anisotropy.csv contains all results");
+        notes.push(note(&more));
+    }
+    notes.concat()
 }
 
 fn cells(row: &Anisotropy, found: &OverDirections) -> Vec<String> {

@@ -3,21 +3,21 @@
 use slipfront_base::machine::available_memory;
 use slipfront_base::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
 use slipfront_case::case::Case;
-use slipfront_run::estimate_cost::{StepTime, TimeRange};
+use slipfront_run::estimate_cost::StepTime;
 use slipfront_run::running::useful_threads;
 use slipfront_run::times::instant;
 
 use super::speeds::Speeds;
-use super::summary::notes;
 use super::times::duration;
+use crate::wrap::notes;
 
 /// The expected onset, the stability of the step, the cost, the speeds and the warnings; `per_step` is the
 /// time of a step.
 pub(crate) fn cost(case: &Case, per_step: &StepTime) -> String {
     let (loading, _) = loading(case);
-    let speeds = Speeds::of(case).map_or(String::new(), |speeds| speeds.text(case, per_step));
+    let speeds = Speeds::new(case).map_or(String::new(), |speeds| speeds.text(case, per_step));
     let time = per_step.of_steps(&case.expected_steps());
-    onset(case) + &loading + &scales(case) + &resources(case, time) + &speeds + &notes(&warnings(case))
+    onset(case) + &loading + &scales(case) + &resources(case, time) + &speeds + &notes(warnings(case))
 }
 
 /// Warnings about a case, with the note on a drive that loads it faster than a front crosses it.
@@ -137,7 +137,7 @@ fn scales(case: &Case) -> String {
 }
 
 /// Remark on the cost of a held drive, which excludes the unknown time in which the drive is at rest.
-pub(super) fn standing(is_held: bool) -> &'static str {
+pub(super) fn held_drive_remark(is_held: bool) -> &'static str {
     if is_held {
         ", not counting steps in which the drive stops"
     } else {
@@ -145,7 +145,7 @@ pub(super) fn standing(is_held: bool) -> &'static str {
     }
 }
 
-fn resources(case: &Case, time: TimeRange) -> String {
+fn resources(case: &Case, time: [f64; 2]) -> String {
     let budget = &case.budget;
     let available = available_memory().map_or(String::new(), |there| {
         format!(" of {} available", byte_size(there))
@@ -155,7 +155,7 @@ fn resources(case: &Case, time: TimeRange) -> String {
          memory            {}{available}\n\
          disk              {}, of which snapshots take {}; {} more for checkpoints during the run\n",
         case.block_steps(),
-        standing(case.model.drive.is_held()),
+        held_drive_remark(case.model.drive.is_held()),
         duration(time),
         match useful_threads(case, rayon::current_num_threads()) {
             1 => String::new(),

@@ -3,7 +3,7 @@
 use slipfront_base::number_format::{count, four_digits};
 use slipfront_design::DesignPlan;
 
-use super::cost::standing;
+use super::cost::held_drive_remark;
 use super::times::duration;
 
 /// The plan of a design and its cost.
@@ -32,7 +32,7 @@ pub(crate) fn design(plan: &DesignPlan, threads: usize) -> String {
         count(plan.search_runs, "run"),
         count(plan.verdict_runs, "run"),
         plan.block_steps,
-        standing(plan.time.most.is_infinite()),
+        held_drive_remark(plan.time[1].is_infinite()),
         duration(plan.time),
         count(threads, "thread")
     )

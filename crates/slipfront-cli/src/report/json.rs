@@ -9,11 +9,6 @@ use slipfront_run::running::useful_threads;
 use super::cost::warnings;
 use super::speeds::Speeds;
 
-/// The printed text of a report.
-pub(crate) fn text_of(report: &Value) -> String {
-    format!("{report:#}\n")
-}
-
 /// The physics and the cost of a case, with the key names of `summary.json` for the same numbers; `per_step`
 /// is the time of a step. A number that is not finite, such as the critical size if slip of any size is
 /// stable, is null.
@@ -65,7 +60,7 @@ pub(crate) fn check(case: &Case, per_step: &StepTime) -> Value {
         "threads": useful_threads(case, rayon::current_num_threads()),
         "seconds_per_step_at_rest": per_step.at_rest,
         "seconds_per_step_sliding": per_step.sliding,
-        "speeds": Speeds::of(case).map(|speeds| speeds.json(case, per_step)),
+        "speeds": Speeds::new(case).map(|speeds| speeds.json(case, per_step)),
         "memory_bytes": bytes(budget.memory()),
         "memory_available_bytes": available_memory().map(bytes),
         "disk_bytes": bytes(budget.disk()),

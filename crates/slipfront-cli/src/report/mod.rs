@@ -2,21 +2,12 @@
 //! results of a study.
 
 mod anisotropy;
-mod cost;
-mod design;
-mod json;
-mod lengths;
-mod physics;
+pub(crate) mod cost;
+pub(crate) mod design;
+pub(crate) mod json;
+pub(crate) mod lengths;
+pub(crate) mod physics;
 mod speeds;
-mod study;
-mod summary;
+pub(crate) mod study;
+pub(crate) mod summary;
 mod times;
-
-pub(crate) use cost::cost;
-pub(crate) use design::design;
-pub(crate) use json::{check, text_of};
-pub(crate) use lengths::lengths;
-pub use physics::physics;
-pub(crate) use physics::{smallest, texture};
-pub(crate) use study::{plan, study};
-pub(crate) use summary::summary;

@@ -8,7 +8,7 @@ use slipfront_case::case_file::{
     Attached, AttachedEdge, AutoOrStiffness, DriveStiffness, Grade, Motion, Outline,
 };
 
-use super::summary::notes;
+use crate::wrap::notes;
 
 /// The resolved physics of a case, as a tree.
 pub fn physics(case: &Case) -> String {
@@ -239,9 +239,8 @@ pub(crate) fn smallest(case: &Case, smallest: Clearance, said: &[String]) -> Str
         let length = with_si_prefix(blocks * case.scales.block_size, "m");
         lines += &format!("\nsmallest {name} {length}");
     }
-    let said = said.iter().cloned();
-    let warnings: Vec<String> = case.too_coarse().into_iter().chain(said).collect();
-    for note in notes(&warnings).lines() {
+    let warnings = case.too_coarse().into_iter().chain(said.iter().cloned());
+    for note in notes(warnings).lines() {
         lines += &format!("\n{note}");
     }
     lines

@@ -31,7 +31,7 @@ pub(super) struct Speeds {
 
 impl Speeds {
     /// The speeds of a case; none if its speed is part of its physics.
-    pub(super) fn of(case: &Case) -> Option<Self> {
+    pub(super) fn new(case: &Case) -> Option<Self> {
         let given = case.loading_speed()?;
         let slow = given.times(rounded_down(case, given.factor_to_slow()));
         let held = rounded_down(case, HELD_RISE / case.rise_per_step());

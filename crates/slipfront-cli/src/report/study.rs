@@ -4,7 +4,6 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use slipfront_base::number_format::{are, byte_size, count, four_digits, with_half_width};
-use slipfront_run::estimate_cost::TimeRange;
 use slipfront_study::text_table::table;
 use slipfront_study::{
     MeshedCoverage, Plan, REDUCTION, StudyResults, idle_axes, quantities_without_pictures, warning_texts,
@@ -12,9 +11,9 @@ use slipfront_study::{
 };
 
 use super::anisotropy::anisotropy;
-use super::cost::standing;
+use super::cost::held_drive_remark;
 use super::times::duration;
-use crate::wrap::note;
+use crate::wrap::{note, notes};
 
 /// Largest number of printed levels of an axis.
 const MAX_LEVELS: usize = 10;
@@ -23,7 +22,7 @@ const MAX_LEVELS: usize = 10;
 const MAX_POINTS: usize = 40;
 
 /// The plan of a study and its cost.
-pub(crate) fn plan(plan: &Plan, time: TimeRange, threads: usize) -> String {
+pub(crate) fn study_plan(plan: &Plan, time: [f64; 2], threads: usize) -> String {
     let settings = &plan.settings;
     let (min, max) = (settings.min_replicates(), settings.max_replicates());
     let replicates = match &settings.until {
@@ -52,19 +51,19 @@ pub(crate) fn plan(plan: &Plan, time: TimeRange, threads: usize) -> String {
         axes(plan),
         count(plan.points.len(), "point"),
         plan.block_steps(),
-        standing(plan.has_held_drive()),
+        held_drive_remark(plan.has_held_drive()),
         duration(time),
         count(threads, "thread"),
         byte_size(plan.memory(threads)),
         count(threads, "run"),
         byte_size(plan.disk(plan.runs(min))),
-        idle_axes(plan)
-            .iter()
-            .chain(&why_no_pictures(&plan.axes))
-            .chain(&merged(plan))
-            .map(|sentence| note(sentence))
-            .collect::<String>(),
-        case_warnings(plan)
+        notes(
+            idle_axes(plan)
+                .into_iter()
+                .chain(why_no_pictures(&plan.axes))
+                .chain(merged(plan))
+        ),
+        notes(warning_texts(plan))
     )
 }
 
@@ -90,27 +89,19 @@ fn axes(plan: &Plan) -> String {
 
 /// Note on coverages that give the same mesh.
 fn merged(plan: &Plan) -> Option<String> {
-    MeshedCoverage::of(plan)?.merged(plan)
-}
-
-/// Warnings about the cases of a study, as notes.
-fn case_warnings(plan: &Plan) -> String {
-    warning_texts(plan)
-        .iter()
-        .map(|sentence| note(sentence))
-        .collect()
+    MeshedCoverage::from_plan(plan)?.merged(plan)
 }
 
 /// The results of a study: its main quantity at every point, notes, and the folder of tables and pictures,
 /// with the reasons for omissions.
-pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
+pub(crate) fn study_results(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
     let missing = why_no_pictures(&plan.axes).into_iter();
     let missing = missing.chain(quantities_without_pictures(plan, results));
     format!(
         "{}{}{}runs.csv, points.csv and pictures in {}\n{}",
         points(plan, results),
         anisotropy(plan, results),
-        notes(plan, results),
+        notes_on_results(plan, results),
         folder.display(),
         missing
             .map(|sentence| format!("{sentence}\n"))
@@ -157,7 +148,7 @@ fn points(plan: &Plan, results: &StudyResults) -> String {
 
 /// The meshed coverage at the points shown, if an axis requests another coverage at any of them.
 fn meshed(plan: &Plan, shown: usize) -> Option<Vec<String>> {
-    let coverage = MeshedCoverage::of(plan)?;
+    let coverage = MeshedCoverage::from_plan(plan)?;
     let levels: Vec<Vec<usize>> = plan.points[..shown]
         .iter()
         .map(|point| plan.levels(point))
@@ -205,7 +196,7 @@ fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String>
 }
 
 /// Notes on the study as a whole.
-fn notes(plan: &Plan, results: &StudyResults) -> String {
+fn notes_on_results(plan: &Plan, results: &StudyResults) -> String {
     let mut text = String::new();
     // Points share references, and each reference counts once.
     let without: HashSet<String> = results
@@ -224,8 +215,7 @@ fn notes(plan: &Plan, results: &StudyResults) -> String {
             }
         ));
     }
-    text.extend(merged(plan).map(|sentence| note(&sentence)));
-    text += &case_warnings(plan);
+    text += &notes(merged(plan).into_iter().chain(warning_texts(plan)));
     if results.orphaned_runs > 0 {
         text += &note(&format!(
             "{} not part of the present study; kept in runs.jsonl",

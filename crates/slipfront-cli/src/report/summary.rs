@@ -7,7 +7,7 @@ use slipfront_run::observers;
 use slipfront_run::summary::Summary;
 use slipfront_run::times::instant;
 
-use crate::wrap::note;
+use crate::wrap::notes;
 
 /// The summary of a run, with one line per number, and its warnings.
 pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
@@ -96,9 +96,4 @@ fn energy(summary: &Summary) -> String {
         with_si_prefix(summary.work_j, "J"),
         summary.energy_error.abs()
     )
-}
-
-/// Warnings, one note each.
-pub(super) fn notes(warnings: &[String]) -> String {
-    warnings.iter().map(|warning| note(warning)).collect()
 }

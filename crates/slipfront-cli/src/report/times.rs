@@ -3,20 +3,19 @@
 use std::time::Duration;
 
 use indicatif::HumanDuration;
-use slipfront_run::estimate_cost::TimeRange;
 
-/// Duration of a computation.
-pub(super) fn duration(time: TimeRange) -> String {
-    if time.most.is_infinite() {
-        return match time.least {
+/// Duration of a computation, by its bounds in s.
+pub(super) fn duration([least, most]: [f64; 2]) -> String {
+    if most.is_infinite() {
+        return match least {
             least if least < 1.0 => "at least a fraction of a second".to_owned(),
             least => format!("at least {}", rounded(least)),
         };
     }
-    if time.most < 1.0 {
+    if most < 1.0 {
         return "less than a second".to_owned();
     }
-    let [least, most] = [time.least, time.most].map(rounded);
+    let [least, most] = [least, most].map(rounded);
     if least == most {
         return format!("about {most}");
     }

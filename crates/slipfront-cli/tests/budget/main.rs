@@ -385,7 +385,7 @@ fn checkpoints(folder: &Path) {
         };
         let out = folder.join("saved");
         std::fs::create_dir(&out).unwrap();
-        Unfinished::of(&out).create().unwrap();
+        Unfinished::in_folder(&out).create().unwrap();
         let save = |case: &Case, running: &Running| {
             let mut checkpoints = Checkpoints::new(&out, case, jiff::Timestamp::UNIX_EPOCH);
             checkpoints.save(running, &Alone).unwrap();
@@ -499,7 +499,7 @@ fn designs(_: &Path) {
     assert_honest_on_threads(
         "a design",
         FIXED_WITHOUT_PICTURES,
-        |threads| file.memory(runs).unwrap().of(threads),
+        |threads| file.memory(runs).unwrap().on_threads(threads),
         |threads| drop(on_threads(threads, find).unwrap()),
     );
 }
@@ -536,7 +536,10 @@ fn calibrations(folder: &Path) {
         });
         // Two threads, of which one has to wait, take as much as one alone, and otherwise more.
         most = most.max(taken - before);
-        let said = file.memory(&file.read(&records).unwrap()).unwrap().of(threads);
+        let said = file
+            .memory(&file.read(&records).unwrap())
+            .unwrap()
+            .on_threads(threads);
         assert_honest(
             &format!("a calibration on {threads} threads"),
             said,

@@ -77,7 +77,7 @@ impl SurfaceResponse {
             let im_back = backwards(&spectrum.im, row, first);
             let at = row * spectrum.stride + first;
             let [a, b_re, b_im] = self.tables.each_ref().map(|table| &table[at..at + LANES]);
-            Lanes::of(
+            Lanes::from_functions(
                 |k| -(a[k] * here.re[k] + (b_re[k] * re_back[k] + b_im[k] * im_back[k])),
                 |k| -(a[k] * here.im[k] + (b_im[k] * re_back[k] - b_re[k] * im_back[k])),
             )

@@ -25,7 +25,7 @@ pub(super) struct Lanes {
 impl Lanes {
     /// Eight numbers from two functions of the place: a loop for each becomes vectors.
     #[inline(always)]
-    pub(super) fn of(re: impl Fn(usize) -> f64, im: impl Fn(usize) -> f64) -> Self {
+    pub(super) fn from_functions(re: impl Fn(usize) -> f64, im: impl Fn(usize) -> f64) -> Self {
         let mut lanes = Self::default();
         for k in 0..LANES {
             lanes.re[k] = re(k);
@@ -38,24 +38,24 @@ impl Lanes {
 
     #[inline(always)]
     fn plus(&self, other: &Self) -> Self {
-        Self::of(|k| self.re[k] + other.re[k], |k| self.im[k] + other.im[k])
+        Self::from_functions(|k| self.re[k] + other.re[k], |k| self.im[k] + other.im[k])
     }
 
     #[inline(always)]
     fn minus(&self, other: &Self) -> Self {
-        Self::of(|k| self.re[k] - other.re[k], |k| self.im[k] - other.im[k])
+        Self::from_functions(|k| self.re[k] - other.re[k], |k| self.im[k] - other.im[k])
     }
 
     /// The product with a real number.
     #[inline(always)]
     fn scaled(&self, factor: f64) -> Self {
-        Self::of(|k| factor * self.re[k], |k| factor * self.im[k])
+        Self::from_functions(|k| factor * self.re[k], |k| factor * self.im[k])
     }
 
     /// The product with a complex number.
     #[inline(always)]
     fn turned(&self, [re, im]: [f64; 2]) -> Self {
-        Self::of(
+        Self::from_functions(
             |k| self.re[k] * re - self.im[k] * im,
             |k| self.re[k] * im + self.im[k] * re,
         )
@@ -64,7 +64,7 @@ impl Lanes {
     /// The product with -i.
     #[inline(always)]
     fn quarter_back(&self) -> Self {
-        Self::of(|k| self.im[k], |k| -self.re[k])
+        Self::from_functions(|k| self.im[k], |k| -self.re[k])
     }
 }
 
@@ -234,7 +234,7 @@ impl Rows {
     pub(super) fn lanes(&self, row: usize, first: usize) -> Lanes {
         let at = row * self.stride + first;
         let (re, im) = (&self.re[at..at + LANES], &self.im[at..at + LANES]);
-        Lanes::of(|k| re[k], |k| im[k])
+        Lanes::from_functions(|k| re[k], |k| im[k])
     }
 }
 

@@ -38,7 +38,7 @@ fn write_case(all: &TempDir, name: &str) -> PathBuf {
 
 /// The error with which the laboratory does not start.
 fn refused(path: &Path, allowed: &[PathBuf]) -> String {
-    Start::of(path, allowed).err().unwrap().to_string()
+    Start::read(path, allowed).err().unwrap().to_string()
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn a_case_names_files_of_its_folder_and_of_those_that_are_allowed() {
             )),
             "{said}"
         );
-        assert!(Start::of(&path, &[all.path().join("mine")]).is_ok(), "{name}");
+        assert!(Start::read(&path, &[all.path().join("mine")]).is_ok(), "{name}");
         // The allowed folder is not the one with the file.
         assert!(
             refused(&path, &[all.path().join("case")]).contains("outside"),
@@ -79,7 +79,7 @@ fn a_case_names_files_of_its_folder_and_of_those_that_are_allowed() {
         );
     }
     for name in ["own.csv", "./own.csv", "../case/own.csv"] {
-        assert!(Start::of(&write_case(&all, name), &[]).is_ok(), "{name}");
+        assert!(Start::read(&write_case(&all, name), &[]).is_ok(), "{name}");
     }
     // The rule holds for every key that names a file, not only for those of coefficients.
     for ending in ["npy", "png"] {
@@ -112,7 +112,7 @@ fn a_case_names_files_of_its_folder_and_of_those_that_are_allowed() {
 #[test]
 fn links_and_exports_hold_the_files_that_were_read() {
     let all = folders();
-    let start = Start::of(
+    let start = Start::read(
         &write_case(&all, "../mine/secret.csv"),
         &[all.path().join("mine")],
     )
@@ -153,7 +153,7 @@ fn the_cases_of_the_repository_can_be_opened() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|ending| ending == "toml") {
             with_files += usize::from(std::fs::read_to_string(&path).unwrap().contains("file = "));
-            if let Err(error) = Start::of(&path, &[]) {
+            if let Err(error) = Start::read(&path, &[]) {
                 let too_large = "more than the 524288 that the laboratory shows";
                 assert!(
                     error.to_string().contains(too_large),
@@ -184,7 +184,7 @@ fn run_folders_hold_their_files_themselves() {
         "{said}"
     );
     // The user may name such a run at the start.
-    assert!(Start::of(&lab.results().join("run"), &[]).is_ok());
+    assert!(Start::read(&lab.results().join("run"), &[]).is_ok());
     for name in [
         "case.toml",
         "summary.json",
@@ -200,9 +200,9 @@ fn run_folders_hold_their_files_themselves() {
             said.contains(name) && said.contains("outside of the folder of the run"),
             "{said}"
         );
-        assert!(Start::of(&moved, &[elsewhere.path().to_owned()]).is_ok());
+        assert!(Start::read(&moved, &[elsewhere.path().to_owned()]).is_ok());
         std::fs::remove_file(moved.join(name)).unwrap();
         std::fs::rename(&away, moved.join(name)).unwrap();
     }
-    assert!(Start::of(&moved, &[]).is_ok());
+    assert!(Start::read(&moved, &[]).is_ok());
 }

@@ -295,7 +295,7 @@ fn the_uncertainty_is_that_of_several_seeds() {
         .zip(&without)
         .map(|(one, other)| 100.0 * (one / other - 1.0))
         .collect();
-    let sample = slipfront_study::Sample::of(&changes, 0.95).unwrap();
+    let sample = slipfront_study::Sample::from_values(&changes, 0.95).unwrap();
     assert_eq!(number(&repeated["change_percent"]["mean"]), sample.mean);
     assert_eq!(
         number(&repeated["change_percent"]["half_width"]),

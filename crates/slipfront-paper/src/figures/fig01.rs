@@ -3,7 +3,7 @@
 
 use slipfront_plot::{Sketch, Stroke, StrokeStyle};
 
-use crate::drawing::Drawing;
+use crate::drawing::{Drawing, names, stroke};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::figures::lattice;
@@ -28,14 +28,6 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     lattice::measure(runner, data)
 }
 
-fn add(drawn: &mut Sketch, style: StrokeStyle, points: Vec<[f64; 2]>) {
-    drawn.strokes.push(Stroke { style, points });
-}
-
-fn label(drawn: &mut Sketch, name: &str, at: [f64; 2]) {
-    drawn.labels.push((name.to_owned(), at));
-}
-
 /// The lattice; springs first, so that blocks cover their ends.
 fn from_above(drawn: &mut Sketch) {
     let place = |i: i32, j: i32| [f64::from(i), f64::from(j)];
@@ -46,20 +38,24 @@ fn from_above(drawn: &mut Sketch) {
                 // Move the zigzags of diagonals away from the middle, so that they cross at straight parts.
                 let middle = if colour == 0 { 0.5 } else { 0.3 };
                 let spring = spring(place(i, j), place(to_i, to_j), middle);
-                add(drawn, StrokeStyle::Line(colour), spring);
+                drawn.strokes.push(stroke(StrokeStyle::Line(colour), &spring));
             }
         }
     }
     for (i, j) in blocks() {
-        body(drawn, place(i, j), HALF);
+        drawn.strokes.push(body(place(i, j), HALF));
     }
-    label(drawn, "k_1", [0.5, 2.2]);
-    label(drawn, "k_2", [1.5, 1.72]);
-    add(drawn, StrokeStyle::Thin, vec![[0.0, -0.2], [0.0, -0.45]]);
-    add(drawn, StrokeStyle::Thin, vec![[1.0, -0.2], [1.0, -0.45]]);
-    add(drawn, StrokeStyle::Arrow, vec![[0.5, -0.35], [0.0, -0.35]]);
-    add(drawn, StrokeStyle::Arrow, vec![[0.5, -0.35], [1.0, -0.35]]);
-    label(drawn, "l", [0.5, -0.52]);
+    drawn.strokes.extend([
+        stroke(StrokeStyle::Thin, &[[0.0, -0.2], [0.0, -0.45]]),
+        stroke(StrokeStyle::Thin, &[[1.0, -0.2], [1.0, -0.45]]),
+        stroke(StrokeStyle::Arrow, &[[0.5, -0.35], [0.0, -0.35]]),
+        stroke(StrokeStyle::Arrow, &[[0.5, -0.35], [1.0, -0.35]]),
+    ]);
+    drawn.labels.extend(names([
+        ("k_1", [0.5, 2.2]),
+        ("k_2", [1.5, 1.72]),
+        ("l", [0.5, -0.52]),
+    ]));
 }
 
 fn blocks() -> impl Iterator<Item = (i32, i32)> {
@@ -69,45 +65,35 @@ fn blocks() -> impl Iterator<Item = (i32, i32)> {
 /// A block with its load, drive and friction.
 fn from_the_side(drawn: &mut Sketch, [x, y]: [f64; 2]) {
     let half = 2.0 * HALF;
-    let floor = y - half;
-    add(
-        drawn,
-        StrokeStyle::Thin,
-        vec![[x - 0.75, floor], [x + 1.75, floor]],
-    );
+    let (floor, top, pulled) = (y - half, y + half, x + 1.15);
+    let ground = [[x - 0.75, floor], [x + 1.75, floor]];
+    drawn.strokes.push(stroke(StrokeStyle::Thin, &ground));
     for k in 0..25 {
         let at = x - 0.65 + 0.1 * f64::from(k);
-        add(
-            drawn,
-            StrokeStyle::Thin,
-            vec![[at, floor], [at - 0.1, floor - 0.12]],
-        );
+        let hatch = [[at, floor], [at - 0.1, floor - 0.12]];
+        drawn.strokes.push(stroke(StrokeStyle::Thin, &hatch));
     }
-    let pulled = x + 1.15;
-    add(drawn, StrokeStyle::Line(2), spring([x, y], [pulled, y], 0.6));
-    add(drawn, StrokeStyle::Arrow, vec![[pulled, y], [x + 1.7, y]]);
-    body(drawn, [x, y], half);
-    add(
-        drawn,
-        StrokeStyle::Arrow,
-        vec![[x, y + half + 0.6], [x, y + half + 0.03]],
-    );
-    add(
-        drawn,
-        StrokeStyle::Arrow,
-        vec![[x - half, floor + 0.07], [x - 0.75, floor + 0.07]],
-    );
-    label(drawn, "m", [x, y]);
-    label(drawn, "F_n", [x + 0.2, y + half + 0.4]);
-    label(drawn, "F_f", [x - 0.55, floor + 0.25]);
-    label(drawn, "k_s", [x + 0.69, y + 0.24]);
-    label(drawn, "V", [x + 1.55, y + 0.18]);
+    let friction = [[x - half, floor + 0.07], [x - 0.75, floor + 0.07]];
+    drawn.strokes.extend([
+        stroke(StrokeStyle::Line(2), &spring([x, y], [pulled, y], 0.6)),
+        stroke(StrokeStyle::Arrow, &[[pulled, y], [x + 1.7, y]]),
+        body([x, y], half),
+        stroke(StrokeStyle::Arrow, &[[x, top + 0.6], [x, top + 0.03]]),
+        stroke(StrokeStyle::Arrow, &friction),
+    ]);
+    drawn.labels.extend(names([
+        ("m", [x, y]),
+        ("F_n", [x + 0.2, top + 0.4]),
+        ("F_f", [x - 0.55, floor + 0.25]),
+        ("k_s", [x + 0.69, y + 0.24]),
+        ("V", [x + 1.55, y + 0.18]),
+    ]));
 }
 
-fn body(drawn: &mut Sketch, [x, y]: [f64; 2], half: f64) {
+fn body([x, y]: [f64; 2], half: f64) -> Stroke {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     let corner = |(to_x, to_y): (f64, f64)| [x + half * to_x, y + half * to_y];
-    add(drawn, StrokeStyle::Body, corners.map(corner).to_vec());
+    stroke(StrokeStyle::Body, &corners.map(corner))
 }
 
 /// A line between two points with a zigzag around the position `middle`, from 0 to 1 along its length.

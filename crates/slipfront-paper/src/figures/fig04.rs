@@ -5,12 +5,15 @@ use slipfront::observe::{Field, Frame};
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::run::{FigureRun, on_each, seen_at};
+use crate::run::{FigureRun, on_each, recorded_at};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, smallest};
 
 /// The curve of Fig. 3 on which the instants are marked.
 const CASE: &str = "table1/case8";
+
+/// A measurement on a run, which may need further runs.
+type Measure = fn(&FigureRunner, &FigureRun) -> Result<f64, PaperError>;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let runs = runner.run(runner.case_on_surfaces(CASE)?)?;
@@ -28,29 +31,27 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         "worst_rank_of_first_slip",
         largest(on_each(&runs, first_slip_rank)?),
     );
-    data.values(
-        "fall_at_slip_over_rise",
-        &on_each(&runs, |run| fall_over_rise(runner, run))?,
-    );
-    data.values("slipped_at_peak_percent", &on_each(&runs, slipped_at_peak)?);
-    data.values("rest_slips_within_percent", &on_each(&runs, rest_slips_within)?);
-    data.values(
-        "sliding_jump_percent",
-        &on_each(&runs, |run| Ok(run.instant('D')?.point.sliding_percent))?,
-    );
-    for (name, letter) in [
-        ("stress_falls_from_c_to_e_percent", 'C'),
-        ("stress_falls_from_d_to_e_percent", 'D'),
-    ] {
-        data.values(name, &on_each(&runs, |run| falls_until_e(run, letter))?);
-    }
-    data.values(
-        "kinetic_minimum_over_e",
-        &on_each(&runs, |run| {
+    let measures: [(&str, Measure); 7] = [
+        ("fall_at_slip_over_rise", fall_over_rise),
+        ("slipped_at_peak_percent", |_, run| Ok(slipped_at_peak(run))),
+        ("rest_slips_within_percent", |_, run| rest_slips_within(run)),
+        ("sliding_jump_percent", |_, run| {
+            Ok(run.instant('D')?.point.sliding_percent)
+        }),
+        ("stress_falls_from_c_to_e_percent", |_, run| {
+            falls_until_e(run, 'C')
+        }),
+        ("stress_falls_from_d_to_e_percent", |_, run| {
+            falls_until_e(run, 'D')
+        }),
+        ("kinetic_minimum_over_e", |_, run| {
             let [from, until] = run.kinetic_window()?;
             Ok(smallest(run.friction_between(from, until)) - run.instant('E')?.point.mu_star)
-        })?,
-    );
+        }),
+    ];
+    for (name, measure) in measures {
+        data.values(name, &on_each(&runs, |run| measure(runner, run))?);
+    }
     let sliding = |run: &FigureRun| run.record.summary.sliding_percent_kinetic;
     data.values(
         "kinetic_sliding_percent",
@@ -64,7 +65,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 fn before_slip(runner: &FigureRunner, main: &FigureRun, data: &mut FigureData) -> Result<(), PaperError> {
     let first = main.first_slip()?;
     let times: Vec<f64> = (1..=8).map(|k| first * f64::from(k) / 9.0).collect();
-    let run = runner.run_one(seen_at(runner.case(CASE, &[])?, &times))?;
+    let run = runner.run_one(recorded_at(runner.case(CASE, &[])?, &times))?;
     let drive = &run.case.model.drive;
     let (mut error, mut motion) = (0.0_f64, 0.0_f64);
     for (_, frame) in &run.record.frames {
@@ -101,7 +102,7 @@ fn fall_over_rise(runner: &FigureRunner, run: &FigureRun) -> Result<f64, PaperEr
     let mut times = vec![held - 2.0, held];
     times.extend((1..=4).map(|k| held + 0.5 * f64::from(k)));
     let seed = format!("friction.seed={}", run.case.file.friction.seed);
-    let again = runner.run_one(seen_at(runner.case(CASE, &[&seed])?, &times))?;
+    let again = runner.run_one(recorded_at(runner.case(CASE, &[&seed])?, &times))?;
     let stress = |(_, frame): &(String, Frame)| -> Result<f64, PaperError> {
         Ok(f64::from(again.field(frame, Field::ContactStress)?[block]))
     };
@@ -114,11 +115,11 @@ fn fall_over_rise(runner: &FigureRunner, run: &FigureRun) -> Result<f64, PaperEr
 }
 
 /// Blocks that have slipped by the time of the peak, %.
-fn slipped_at_peak(run: &FigureRun) -> Result<f64, PaperError> {
+fn slipped_at_peak(run: &FigureRun) -> f64 {
     let onset = run.record.summary.onset_time_star;
     let times = run.slip_times();
     let slipped = times.iter().filter(|&&time| time <= onset).count();
-    Ok(100.0 * slipped as f64 / run.case.model.surface.n_contact() as f64)
+    100.0 * slipped as f64 / run.case.model.surface.n_contact() as f64
 }
 
 /// Time from the peak until every block has slipped, % of t_s*.

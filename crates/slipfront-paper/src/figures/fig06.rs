@@ -18,7 +18,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let steps: Vec<MeasuredNumber> = (0..speeds.len())
         .map(|k| {
             let [times, steps] = ["onset_time_star", "dt_star"].map(|quantity| sweep.values(&[k], quantity));
-            MeasuredNumber::of(&ratios(&times, &steps))
+            MeasuredNumber::from_values(&ratios(&times, &steps))
         })
         .collect();
     data.panel(
@@ -68,7 +68,7 @@ fn material(sweep: &ParameterSweep, data: &mut FigureData) {
     let names = sweep.names(0);
     let factor_of = |quantity: &str, k: usize| {
         let [changed, unchanged] = [k, 0].map(|k| sweep.values(&[k], quantity));
-        MeasuredNumber::of(&ratios(&changed, &unchanged))
+        MeasuredNumber::from_values(&ratios(&changed, &unchanged))
     };
     let factor = |quantity: &str, name: &str| {
         let place = names.iter().position(|other| other == name);

@@ -24,7 +24,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         let [peaks, levels] =
             ["static_friction_star", "kinetic_friction_star"].map(|quantity| sweep.values(&[k], quantity));
         let falls: Vec<f64> = peaks.iter().zip(&levels).map(|(a, b)| a - b).collect();
-        MeasuredNumber::of(&falls)
+        MeasuredNumber::from_values(&falls)
     };
     let falls: Vec<f64> = (0..ratios.len()).map(|k| fall(k).value).collect();
     data.value("largest_rise_of_fall", largest(rises(&falls)));
@@ -63,7 +63,11 @@ fn excess_of_lowest(runner: &mut FigureRunner, data: &mut FigureData) -> Result<
     let rows = windows.iter().map(|(window, excess)| {
         let below = excess.iter().filter(|&&excess| excess < 0.0).count();
         let below = format!("{below} of {}", excess.len());
-        [window.clone(), MeasuredNumber::of(excess).shown(3), below]
+        [
+            window.clone(),
+            MeasuredNumber::from_values(excess).shown(3),
+            below,
+        ]
     });
     data.table(
         "fig10_windows",

@@ -55,13 +55,14 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 /// a spread.
 fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig12_surfaces")?;
-    let farthest_of = |five: &[f64]| farthest(five, mean(five));
     let readings: [(&str, &str, Scatter); 2] = [
-        ("fives_within", "largest deviation", &farthest_of),
+        ("fives_within", "largest deviation", |five| {
+            farthest(five, mean(five))
+        }),
         (
             "fives_within_as_standard",
             "standard deviation",
-            &standard_deviation,
+            standard_deviation,
         ),
     ];
     let mut rows = Vec::new();
@@ -86,7 +87,7 @@ fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), Pape
 }
 
 /// A measure of the scatter of five values.
-type Scatter<'a> = &'a dyn Fn(&[f64]) -> f64;
+type Scatter = fn(&[f64]) -> f64;
 
 /// The standard deviation of a sample, with n - 1 in the denominator.
 fn standard_deviation(sample: &[f64]) -> f64 {
@@ -150,7 +151,7 @@ fn fluctuations(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), 
             rows.push([
                 spreads[k].to_string(),
                 kinetic.to_string(),
-                MeasuredNumber::of(&values).shown(3),
+                MeasuredNumber::from_values(&values).shown(3),
             ]);
             fluctuations.push(values);
         }

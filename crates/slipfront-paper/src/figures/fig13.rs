@@ -2,14 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use crate::drawing::Drawing;
+use crate::drawing::{Drawing, names, stroke};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::runner::FigureRunner;
 use crate::statistics::largest;
 use slipfront_case::case_file;
 use slipfront_case::case_file::CavitySize;
-use slipfront_plot::{Shape, Sketch, Stroke, StrokeStyle};
+use slipfront_plot::{Shape, Sketch, StrokeStyle};
 
 /// Number of corners of a drawn outline.
 const CORNERS: usize = 360;
@@ -87,18 +87,17 @@ fn parameters() -> Sketch {
     let middle = [0.0, 0.0];
     let arm = [libm::cos(phi), libm::sin(phi)];
     let end = on_outline(s, w, phi);
-    let stroke = |style, points| Stroke { style, points };
     Sketch {
         strokes: vec![
-            stroke(StrokeStyle::Area, points.collect()),
-            stroke(StrokeStyle::Thin, circle(1.0, 0.0, TAU)),
-            stroke(StrokeStyle::Thin, circle(0.35, 0.0, phi)),
-            stroke(StrokeStyle::Arrow, vec![middle, [1.6, 0.0]]),
-            stroke(StrokeStyle::Arrow, vec![middle, [0.0, 1.35]]),
-            stroke(StrokeStyle::Arrow, vec![middle, arm]),
-            stroke(StrokeStyle::Arrow, vec![arm, end]),
+            stroke(StrokeStyle::Area, &points.collect::<Vec<_>>()),
+            stroke(StrokeStyle::Thin, &circle(1.0, 0.0, TAU)),
+            stroke(StrokeStyle::Thin, &circle(0.35, 0.0, phi)),
+            stroke(StrokeStyle::Arrow, &[middle, [1.6, 0.0]]),
+            stroke(StrokeStyle::Arrow, &[middle, [0.0, 1.35]]),
+            stroke(StrokeStyle::Arrow, &[middle, arm]),
+            stroke(StrokeStyle::Arrow, &[arm, end]),
         ],
-        labels: [
+        labels: names([
             ("x", [1.6, -0.1]),
             ("y", [0.12, 1.35]),
             ("(x_0, y_0)", [-0.25, -0.1]),
@@ -106,8 +105,7 @@ fn parameters() -> Sketch {
             ("\u{3c6}", [0.45, 0.14]),
             ("w \u{3bb}", [0.94, 0.66]),
             ("(x_\u{393}, y_\u{393})", [1.18, 0.38]),
-        ]
-        .map(|(name, at)| (name.to_owned(), at))
+        ])
         .to_vec(),
     }
 }

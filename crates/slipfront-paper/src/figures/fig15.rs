@@ -70,7 +70,7 @@ fn starting_points(runner: &FigureRunner, data: &mut FigureData) -> Result<(), P
     for (k, spread) in sweep.axis(0).iter().enumerate() {
         let runs = runner.run(sweep.cases(&[k])?)?;
         let counts: Vec<f64> = runs.iter().map(|run| starts(run).len() as f64).collect();
-        rows.push([spread.to_string(), MeasuredNumber::of(&counts).shown(0)]);
+        rows.push([spread.to_string(), MeasuredNumber::from_values(&counts).shown(0)]);
         means.push(mean(&counts));
     }
     data.value("least_rise_of_starts", smallest(rises(&means)));

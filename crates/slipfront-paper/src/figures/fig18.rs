@@ -1,6 +1,6 @@
 //! Fig. 18: the shape of a cavity.
 
-use crate::drawing::{Drawing, stress_maps};
+use crate::drawing::{Drawing, estimate, stress_maps};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::number::{MeasuredNumber, values};
@@ -14,16 +14,9 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let sweep = runner.study("fig18")?;
     let names = sweep.names(0);
     let reductions = sweep.numbers(&[], REDUCTION);
-    let bar = |(name, number): (&String, &MeasuredNumber)| {
-        let [mean, low, high] = number.ends();
-        let label = name.clone();
-        Bar {
-            label,
-            mean,
-            low,
-            high,
-            crossed: false,
-        }
+    let bar = |(name, number): (&String, &MeasuredNumber)| Bar {
+        label: name.clone(),
+        value: estimate(number),
     };
     data.panel(
         "fig18a",

@@ -4,9 +4,9 @@
 //! PDF.
 
 use slipfront_plot::{
-    Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap, Instant,
-    KineticLine, Picture, PictureFormat, PictureSize, Polar, Response, Responses, Shape, StressMap,
-    StressMaps, bars, field_maps, friction, heat_map, polar, response, shapes, stress,
+    Bar, BarChart, BarGroup, DrawnLattice, Estimate, FieldMap, FieldMaps, FrictionAxes, FrictionCurve,
+    HeatAxis, HeatMap, Instant, KineticLine, Picture, PictureFormat, PictureSize, Polar, Response, Responses,
+    Shape, SnapshotMap, SnapshotMaps, bars, field_maps, friction, heat_map, polar, response, shapes, stress,
 };
 
 /// The first digits of the hashes of all files.
@@ -48,22 +48,23 @@ fn curve() -> FrictionCurve {
     }
 }
 
-fn stress_maps() -> StressMaps {
-    let map = |label: &str| StressMap {
+fn stress_maps() -> SnapshotMaps {
+    let map = |label: &str| SnapshotMap {
         label: label.to_string(),
         time_star: 12.5,
         mu_star: 0.5,
         values: numbers(30 * 20).iter().map(|&number| number as f32).collect(),
     };
-    StressMaps {
-        nx: 30,
-        ny: 20,
-        block_size: 1e-6,
-        textured: (0..30 * 20).map(|block| block % 30 < 10 && block > 200).collect(),
+    SnapshotMaps {
+        lattice: DrawnLattice {
+            nx: 30,
+            ny: 20,
+            block_size: 1e-6,
+            textured: (0..30 * 20).map(|block| block % 30 < 10 && block > 200).collect(),
+        },
         maps: vec![map("A"), map("B")],
         value_title: "contact stress \u{3c4}_c*".to_string(),
         range: [0.0, 1.0],
-        is_torque: false,
     }
 }
 
@@ -87,11 +88,11 @@ fn maps() -> FieldMaps {
 fn responses() -> Responses {
     let response = |label: &str, factor: f64| Response {
         label: label.to_string(),
-        x: vec![0.01, 0.02, 0.05, 0.1],
-        mean: [1.0, 2.0, 4.0, 3.0].map(|mean| factor * mean).to_vec(),
-        low: [0.5, 1.5, 3.5, 2.5].map(|mean| factor * mean).to_vec(),
-        high: [1.5, 2.5, 4.5, 3.5].map(|mean| factor * mean).to_vec(),
-        ..Response::default()
+        points: [(0.01, 1.0), (0.02, 2.0), (0.05, 4.0), (0.1, 3.0)]
+            .map(|(x, mean)| (x, [mean - 0.5, mean, mean + 0.5].map(|end| factor * end)))
+            .map(|(x, [low, mean, high])| (x, Estimate::between(low, mean, high)))
+            .to_vec(),
+        line: false,
     };
     Responses {
         x_title: "V*".to_string(),
@@ -106,10 +107,7 @@ fn responses() -> Responses {
 fn chart() -> BarChart {
     let bar = |label: &str, mean: f64| Bar {
         label: label.to_string(),
-        mean,
-        low: mean - 1.0,
-        high: mean + 1.0,
-        crossed: false,
+        value: Estimate::between(mean - 1.0, mean, mean + 1.0),
     };
     let group = |label: &str| BarGroup {
         label: label.to_string(),
@@ -134,8 +132,8 @@ fn heat() -> HeatMap {
         x: axis("V*", &[0.01, 0.03, 0.1]),
         y: axis("A* (%)", &[5.0, 10.0, 20.0]),
         value_title: "\u{3bc}*".to_string(),
-        values: numbers(9),
-        ..HeatMap::default()
+        values: numbers(9).into_iter().map(Estimate::exact).collect(),
+        note: String::new(),
     }
 }
 
@@ -144,8 +142,12 @@ fn around() -> Polar {
         value_title: "\u{3bc}*".to_string(),
         note: "95 % interval of the mean, n = 5".to_string(),
         curves: vec![Response {
-            x: vec![0.0, 90.0, 180.0, 270.0],
-            ..responses().curves[0].clone()
+            points: [0.0, 90.0, 180.0, 270.0]
+                .into_iter()
+                .zip(&responses().curves[0].points)
+                .map(|(degrees, (_, value))| (degrees, *value))
+                .collect(),
+            ..Response::default()
         }],
         ..Polar::default()
     }
@@ -167,7 +169,7 @@ fn every_kind_of_picture_has_its_bytes() {
             "frictions",
             friction(&[curve(), curve()], &FrictionAxes::default(), usual),
         ),
-        ("stress", stress(&stress_maps(), usual)),
+        ("stress", stress(&stress_maps(), false, usual)),
         ("fields", field_maps(&maps(), usual)),
         ("response", response(&responses(), usual)),
         ("bars", bars(&chart(), usual)),

@@ -13,10 +13,10 @@ mod runs;
 use std::path::Path;
 
 use slipfront_plot::{
-    Bar, BarChart, BarGroup, Distribution, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis,
-    HeatMap, KineticLine, Picture, PictureError, PictureFormat, PictureSize, Polar, Response, Responses,
-    Shape, Sketch, Stroke, StrokeStyle, bars, distributions, field_maps, friction, front, heat_map,
-    kymograph, polar, response, shapes, sketch, stress,
+    Bar, BarChart, BarGroup, Distribution, Estimate, FieldMap, FieldMaps, FrictionAxes, FrictionCurve,
+    HeatAxis, HeatMap, KineticLine, Picture, PictureError, PictureFormat, PictureSize, Polar, Response,
+    Responses, Shape, Sketch, Stroke, StrokeStyle, bars, distributions, field_maps, friction, front,
+    heat_map, kymograph, polar, response, shapes, sketch, stress,
 };
 
 use page::Page;
@@ -59,7 +59,7 @@ fn check_one(name: &str, picture: &Picture) -> Page {
             std::fs::write(path, picture.file(format)).unwrap();
         }
     }
-    let page = Page::of(&picture.svg);
+    let page = Page::parse(&picture.svg);
     assert!(!page.texts.is_empty(), "{name} has no text");
     let faults = page.faults();
     assert!(faults.is_empty(), "{name}:\n{}", faults.join("\n"));
@@ -238,15 +238,14 @@ fn stress_on_every_shape() {
             stress_maps(30, 30, UM, SMOOTH, &["t* = 0.0", "t* = 2000.5", "t* = 12345.6"]),
         ),
     ] {
-        check(name, |size| stress(&maps, size));
+        check(name, |size| stress(&maps, false, size));
     }
-    let torque = slipfront_plot::StressMaps {
-        is_torque: true,
+    let torque = slipfront_plot::SnapshotMaps {
         value_title: "velocity along x (\u{b5}m/s)".to_owned(),
         range: [-1.3e-7, 2.6e-7],
         ..maps(40, 40, SMOOTH)
     };
-    check("stress-torque", |size| stress(&torque, size));
+    check("stress-torque", |size| stress(&torque, true, size));
 }
 
 #[test]
@@ -278,16 +277,21 @@ fn fronts_on_every_shape() {
 const NOTE: &str = "intervals: 95 % of the mean, n = 3 to 12";
 
 fn curve(label: &str, level: f64, line: bool) -> Response {
-    let x = vec![0.01, 0.03, 0.1, 0.3];
-    let mean: Vec<f64> = x.iter().map(|x: &f64| level - 0.1 * x.ln()).collect();
+    let point = |x: f64| {
+        let mean = level - 0.1 * x.ln();
+        // The second point is marked, as runs without a transition are.
+        let crossed = !line && x == 0.03;
+        (
+            x,
+            Estimate {
+                crossed,
+                ..Estimate::between(mean - 0.05, mean, mean + 0.05)
+            },
+        )
+    };
     Response {
         label: label.to_owned(),
-        low: mean.iter().map(|mean| mean - 0.05).collect(),
-        high: mean.iter().map(|mean| mean + 0.05).collect(),
-        mean,
-        x,
-        // The second point is marked, as runs without a transition are.
-        crossed: vec![false, !line, false, false],
+        points: [0.01, 0.03, 0.1, 0.3].map(point).to_vec(),
         line,
     }
 }
@@ -370,15 +374,18 @@ fn catalogues() {
 #[test]
 fn polars() {
     let around = |label: &str, mean: &dyn Fn(f64) -> f64, half: f64| {
-        let x: Vec<f64> = (0..24).map(|k| 15.0 * f64::from(k)).collect();
-        let mean: Vec<f64> = x.iter().map(|degrees| mean(*degrees)).collect();
+        let point = |k: i32| {
+            let degrees = 15.0 * f64::from(k);
+            let mean = mean(degrees);
+            let value = Estimate {
+                crossed: degrees == 60.0,
+                ..Estimate::between(mean - half, mean, mean + half)
+            };
+            (degrees, value)
+        };
         Response {
             label: label.to_owned(),
-            low: mean.iter().map(|mean| mean - half).collect(),
-            high: mean.iter().map(|mean| mean + half).collect(),
-            mean,
-            crossed: x.iter().map(|degrees| *degrees == 60.0).collect(),
-            x,
+            points: (0..24).map(point).collect(),
             line: false,
         }
     };
@@ -407,7 +414,7 @@ fn polars() {
     let wide = vec![around(statics, &twofold, 0.9), around(kinetics, &|_| 0.45, 0.6)];
     check("polar-wide", |size| drawn("", &wide, size));
     let mut missing = around(statics, &twofold, 0.05);
-    missing.mean[3] = f64::NAN;
+    missing.points[3].1.mean = f64::NAN;
     check("polar-missing", |size| {
         drawn("", std::slice::from_ref(&missing), size)
     });
@@ -432,10 +439,10 @@ fn bar_charts() {
     let chart = |groups: &[&str], names: &[&str], size: PictureSize| {
         let bar = |(k, label): (usize, &&str)| Bar {
             label: (*label).to_owned(),
-            mean: 0.8 + 0.01 * k as f64,
-            low: 0.7,
-            high: 0.9,
-            crossed: k == 1,
+            value: Estimate {
+                crossed: k == 1,
+                ..Estimate::between(0.7, 0.8 + 0.01 * k as f64, 0.9)
+            },
         };
         let group = |label: &&str| BarGroup {
             label: (*label).to_owned(),
@@ -475,14 +482,19 @@ fn heat_maps() {
     };
     let map = |columns: usize, rows: usize, scale: f64, half: f64, size: PictureSize| {
         let values = |count: usize| (0..count).map(|k| 0.01 * 1.5f64.powi(k as i32)).collect();
+        let value = |k: usize| {
+            let (mean, half) = (scale * (k % 7) as f64, half * (1 + k % 3) as f64);
+            Estimate {
+                crossed: k == 1,
+                ..Estimate::between(mean - half, mean, mean + half)
+            }
+        };
         heat_map(
             &HeatMap {
                 x: axis("drive speed V*", values(columns)),
                 y: axis("texture coverage A* of texture 2 (%)", values(rows)),
                 value_title: "static friction \u{3bc}\u{209b}*".to_owned(),
-                values: (0..columns * rows).map(|k| scale * (k % 7) as f64).collect(),
-                half_widths: (0..columns * rows).map(|k| half * (1 + k % 3) as f64).collect(),
-                crossed: (0..columns * rows).map(|k| k == 1).collect(),
+                values: (0..columns * rows).map(value).collect(),
                 note: NOTE.to_owned(),
             },
             size,

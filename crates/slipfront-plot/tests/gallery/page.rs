@@ -32,7 +32,7 @@ pub(crate) struct Page {
 }
 
 impl Page {
-    pub(crate) fn of(svg: &str) -> Self {
+    pub(crate) fn parse(svg: &str) -> Self {
         let widths: HashMap<&str, f64> = OUTLINES.lines().filter_map(width).collect();
         let advance = |letter: char| {
             let code = format!("{:x}", u32::from(letter));
@@ -151,7 +151,7 @@ fn faults_are_found() {
     let text = |x: f64, y: f64, letters: &str| {
         format!("<text x=\"{x}\" y=\"{y}\" font-size=\"20\" fill=\"#1a1a1a\">{letters}</text>\n")
     };
-    let faults = |texts: &str| Page::of(&svg(texts)).faults();
+    let faults = |texts: &str| Page::parse(&svg(texts)).faults();
     assert!(faults(&(text(5.0, 20.0, "ab") + &text(35.0, 20.0, "ab"))).is_empty());
     assert_eq!(
         faults(&(text(5.0, 20.0, "a") + &text(15.0, 30.0, "b"))),
@@ -160,6 +160,6 @@ fn faults_are_found() {
     assert!(faults(&text(90.0, 20.0, "ab"))[0].contains("leaves the page"));
     assert!(faults(&text(5.0, 10.0, "a"))[0].contains("leaves the page"));
     let curve = "<path d=\"M0 0 50 40\" fill=\"none\" stroke=\"#000000\" stroke-width=\"3.75\"/>\n";
-    let page = Page::of(&svg(&(text(20.0, 30.0, "ab") + &text(60.0, 30.0, "c") + curve)));
+    let page = Page::parse(&svg(&(text(20.0, 30.0, "ab") + &text(60.0, 30.0, "c") + curve)));
     assert_eq!(page.crossed(), ["ab"]);
 }

@@ -1,7 +1,8 @@
 //! Curves and fields that look like those of runs.
 
 use slipfront_plot::{
-    CellMeans, FrictionCurve, FrontMap, Instant, KineticLine, SpaceTime, StressMap, StressMaps,
+    CellMeans, DrawnLattice, FrictionCurve, FrontMap, Instant, KineticLine, SnapshotMap, SnapshotMaps,
+    SpaceTime,
 };
 
 /// A smooth curve through points, as rows of t*, mu*, N*.
@@ -162,9 +163,14 @@ fn means(nx: usize, ny: usize, value: impl Fn(usize, usize) -> f32) -> Vec<f32> 
     means.finish()
 }
 
-fn textured(nx: usize, ny: usize, texture: Texture) -> Vec<bool> {
+fn lattice(nx: usize, ny: usize, block_size: f64, texture: Texture) -> DrawnLattice {
     let shares = means(nx, ny, |i, j| if texture(i, j) { 1.0 } else { 0.0 });
-    shares.into_iter().map(|share| share > 0.5).collect()
+    DrawnLattice {
+        nx,
+        ny,
+        block_size,
+        textured: shares.into_iter().map(|share| share > 0.5).collect(),
+    }
 }
 
 /// Maps of the contact stress at these instants.
@@ -174,7 +180,7 @@ pub(crate) fn stress_maps(
     block_size: f64,
     texture: Texture,
     labels: &[&str],
-) -> StressMaps {
+) -> SnapshotMaps {
     let map = |(index, label): (usize, &&str)| {
         let level = [0.19, 0.82, 0.75, 0.5, 0.25, 0.5][index % 6];
         let value = |i: usize, j: usize| {
@@ -184,22 +190,18 @@ pub(crate) fn stress_maps(
                 (level + 0.1 * index as f64 * (scatter(i + nx * j) - 0.5)) as f32
             }
         };
-        StressMap {
+        SnapshotMap {
             label: (*label).to_owned(),
             time_star: 16.7 + 40.0 * index as f64,
             mu_star: 0.188,
             values: means(nx, ny, value),
         }
     };
-    StressMaps {
-        nx,
-        ny,
-        block_size,
-        textured: textured(nx, ny, texture),
+    SnapshotMaps {
+        lattice: lattice(nx, ny, block_size, texture),
         maps: labels.iter().enumerate().map(map).collect(),
         value_title: "contact stress \u{3c4}_c*".to_owned(),
         range: [0.0, 1.0],
-        is_torque: false,
     }
 }
 
@@ -225,10 +227,7 @@ pub(crate) fn front_of(
         }
     };
     let map = FrontMap {
-        nx,
-        ny,
-        block_size,
-        textured: textured(nx, ny, texture),
+        lattice: lattice(nx, ny, block_size, texture),
         first_slips: means(nx, ny, value),
         nucleations: origins
             .iter()

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use slipfront_case::same::Difference;
+use slipfront_case::same_on_ranks::Difference;
 use thiserror::Error;
 
 /// Version of the file's layout. A program reads no other layout.

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use slipfront::Communicator;
 use slipfront_base::disk::{open_regular, remove_if_there};
 use slipfront_base::text::truncated;
-use slipfront_case::same::expect_same;
+use slipfront_case::same_on_ranks::expect_same;
 
 use super::error::{CheckpointError, LAYOUT};
 use crate::agree::agree_on_io;
@@ -49,9 +49,9 @@ struct FormatVersion {
 pub(super) struct VerifiedFile {
     pub(super) header: Header,
     pub(super) state: RunState,
-    file: File,
+    pub(super) file: File,
     /// Bytes before the columns.
-    begin: u64,
+    pub(super) begin: u64,
 }
 
 impl Header {
@@ -171,12 +171,7 @@ pub(super) fn read(
     };
     let damaged = |why| CheckpointError::Damaged { path: owned(), why };
     let opened = agree_on_io(communicator, open(path)).map_err(unreadable)?;
-    let OpenCheckpoint {
-        mut file,
-        line,
-        length,
-        checksum,
-    } = opened;
+    let (mut file, line, length, checksum) = opened;
     // On a shared file system, a machine may see a replaced file for a while.
     expect_same(communicator, || {
         let header = serde_json::from_str::<Header>(&line);
@@ -227,17 +222,9 @@ pub(super) fn read(
     })
 }
 
-/// A checkpoint file that is open for reading.
-struct OpenCheckpoint {
-    file: File,
-    /// The first line; empty if it is not text.
-    line: String,
-    length: u64,
-    /// The last bytes.
-    checksum: Vec<u8>,
-}
-
-fn open(path: &Path) -> std::io::Result<OpenCheckpoint> {
+/// Opens a file for reading, with its first line, which is empty if it is not text, its length, and its last
+/// bytes, the checksum.
+fn open(path: &Path) -> std::io::Result<(File, String, u64, Vec<u8>)> {
     let mut file = open_regular(path)?;
     let length = file.metadata()?.len();
     let mut line = Vec::new();
@@ -245,12 +232,12 @@ fn open(path: &Path) -> std::io::Result<OpenCheckpoint> {
     let mut checksum = Vec::new();
     file.seek(SeekFrom::Start(length.saturating_sub(OUT_LEN as u64)))?;
     (&file).take(OUT_LEN as u64).read_to_end(&mut checksum)?;
-    Ok(OpenCheckpoint {
-        line: String::from_utf8(line).unwrap_or_default(),
+    Ok((
         file,
+        String::from_utf8(line).unwrap_or_default(),
         length,
         checksum,
-    })
+    ))
 }
 
 /// Reads the state, which occupies all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if
@@ -280,17 +267,5 @@ impl Read for ErrorKeepingReader<'_> {
             self.error = Some(error);
             kind
         })
-    }
-}
-
-impl VerifiedFile {
-    /// The state, and a reader of bytes of the columns.
-    pub(super) fn into_parts(self) -> (RunState, impl FnMut(u64, &mut [u8]) -> std::io::Result<()>) {
-        let (mut file, begin) = (self.file, self.begin);
-        let read = move |offset, bytes: &mut [u8]| {
-            file.seek(SeekFrom::Start(begin + offset))?;
-            file.read_exact(bytes)
-        };
-        (self.state, read)
     }
 }

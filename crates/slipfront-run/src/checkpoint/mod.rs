@@ -8,7 +8,7 @@
 mod error;
 mod file;
 
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use jiff::Timestamp;
 use slipfront::{Communicator, Execution};
 use slipfront_base::disk::{found_at, remove_if_there, sync_folder};
 use slipfront_case::case::Case;
-use slipfront_case::same::expect_same;
+use slipfront_case::same_on_ranks::expect_same;
 
 pub use self::error::CheckpointError;
 use self::file::{Header, VerifiedFile};
@@ -51,7 +51,16 @@ impl LoadedCheckpoint {
         if self.file.state.columns(case) != self.file.header.columns {
             return Ok(None);
         }
-        let (state, read) = self.file.into_parts();
+        let VerifiedFile {
+            state,
+            mut file,
+            begin,
+            ..
+        } = self.file;
+        let read = |offset: u64, bytes: &mut [u8]| {
+            file.seek(SeekFrom::Start(begin + offset))?;
+            file.read_exact(bytes)
+        };
         let communicator = Arc::clone(&execution.communicator);
         let resumed = Running::resume(case, state, execution, read);
         agree_on_io(&*communicator, resumed).map_err(|source| {
@@ -80,7 +89,7 @@ impl Checkpoints {
     pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
         Self {
             folder: folder.to_owned(),
-            unfinished: Unfinished::of(folder),
+            unfinished: Unfinished::in_folder(folder),
             case_blake3: hash_of(case),
             started,
             latest_is_whole: false,
@@ -161,7 +170,7 @@ impl Checkpoints {
         communicator: &dyn Communicator,
     ) -> Result<Option<LoadedCheckpoint>, CheckpointError> {
         for name in [CHECKPOINT, PREVIOUS].into_iter().skip(usize::from(previous)) {
-            let path = Unfinished::of(folder).path().join(name);
+            let path = Unfinished::in_folder(folder).path().join(name);
             // A dangling link must be refused, and not treated as a missing checkpoint.
             let found = agree_on_io(communicator, found_at(&path));
             let is_there = match found {
@@ -234,12 +243,12 @@ mod tests {
     }
 
     fn checkpoints(folder: &Path, case: &Case) -> Checkpoints {
-        Unfinished::of(folder).create().unwrap();
+        Unfinished::in_folder(folder).create().unwrap();
         Checkpoints::new(folder, case, Timestamp::UNIX_EPOCH)
     }
 
     fn latest(folder: &Path) -> Vec<u8> {
-        std::fs::read(Unfinished::of(folder).path().join(CHECKPOINT)).unwrap()
+        std::fs::read(Unfinished::in_folder(folder).path().join(CHECKPOINT)).unwrap()
     }
 
     #[test]
@@ -295,7 +304,7 @@ mod tests {
                 }
                 files
             };
-            Unfinished::of(alone.path()).create().unwrap();
+            Unfinished::in_folder(alone.path()).create().unwrap();
             let expected = saved(&case, alone.path(), Execution::default());
             assert!(expected.len() > 5);
             let on_device = Execution {
@@ -305,7 +314,7 @@ mod tests {
             assert!(saved(&case, alone.path(), on_device) == expected);
             for size in [2, 3, 5] {
                 let folder = tempfile::tempdir().unwrap();
-                Unfinished::of(folder.path()).create().unwrap();
+                Unfinished::in_folder(folder.path()).create().unwrap();
                 Threads::run(size, |rank| {
                     let ranks = Ranks {
                         communicator: rank,
@@ -358,7 +367,7 @@ mod tests {
                 assert_eq!(error, if rank == failing { own } else { &of_others }, "{rank}");
             }
             assert!(latest(folder.path()) == before);
-            let temporary = Unfinished::of(folder.path()).temporary();
+            let temporary = Unfinished::in_folder(folder.path()).temporary();
             assert_eq!(std::fs::read_dir(temporary).unwrap().count(), 0);
         }
     }
@@ -379,7 +388,7 @@ mod tests {
         let longer = [latest(folder.path()), vec![0; 10 << 20]].concat();
         let layout = b"{\"slipfront_checkpoint\":1}\n".to_vec();
         for seen in [earlier, longer, layout, Vec::new()] {
-            std::fs::write(Unfinished::of(other.path()).path().join(CHECKPOINT), &seen).unwrap();
+            std::fs::write(Unfinished::in_folder(other.path()).path().join(CHECKPOINT), &seen).unwrap();
             for differing in 0..3 {
                 let refused = Threads::run(3, |communicator| {
                     let folder = if communicator.rank() == differing {
@@ -456,7 +465,7 @@ mod tests {
                     changed["columns"][which][key] = wrong.into();
                     let contents = [&serde_json::to_vec(&changed).unwrap(), body].concat();
                     let checksum = blake3::hash(blake3::hash(&contents).as_bytes());
-                    let path = Unfinished::of(folder.path()).path().join(CHECKPOINT);
+                    let path = Unfinished::in_folder(folder.path()).path().join(CHECKPOINT);
                     std::fs::write(path, [&contents, &checksum.as_bytes()[..]].concat()).unwrap();
                     let went_on = match Checkpoints::load(folder.path(), &case, false, &Alone) {
                         Err(CheckpointError::Damaged { .. }) => false,

@@ -31,39 +31,35 @@ const ARTICLE_NOTE: &str = "The model";
 pub fn bibtex(folders: &[Exported], by: &Attribution) -> String {
     let mut text = String::new();
     for results in folders {
-        let mut fields = vec![
-            (
-                "title",
-                format!("{{Friction computed with slipfront: {}}}", tex(&results.title())),
-            ),
-            (
-                "note",
-                tex(&format!(
-                    "Made with {}. BLAKE3 hash of {}: {}; seal of {}: {}",
-                    results.program.in_words(),
-                    results.file,
-                    results.hash(),
-                    results.list,
-                    results.seal
-                )),
-            ),
-        ];
-        fields.extend(
-            by.author
-                .iter()
-                .map(|author| ("author", format!("{{{}}}", tex(&author.name)))),
+        let title = format!("{{Friction computed with slipfront: {}}}", tex(&results.title()));
+        let note = format!(
+            "Made with {}. BLAKE3 hash of {}: {}; seal of {}: {}",
+            results.program.in_words(),
+            results.file,
+            results.hash(),
+            results.list,
+            results.seal
         );
-        if let Ok(finished) = results.finished.parse::<Timestamp>() {
-            fields.push(("year", finished.strftime("%Y").to_string()));
-        }
-        fields.extend(by.licence.iter().map(|licence| ("copyright", tex(&licence.name))));
+        let author = by
+            .author
+            .as_ref()
+            .map(|author| format!("{{{}}}", tex(&author.name)));
+        let finished = results.finished.parse::<Timestamp>().ok();
+        let given = [
+            ("title", Some(title)),
+            ("note", Some(tex(&note))),
+            ("author", author),
+            ("year", finished.map(|time| time.strftime("%Y").to_string())),
+            ("copyright", by.licence.as_ref().map(|licence| tex(&licence.name))),
+        ];
+        let fields = given.into_iter().filter_map(|(name, value)| Some((name, value?)));
         let seal = results.seal.get(..16).unwrap_or_default();
-        text += &entry("misc", &format!("slipfront-{}-{seal}", results.kind), &fields);
+        text += &entry("misc", &format!("slipfront-{}-{seal}", results.kind), fields);
     }
     text += &entry(
         "software",
         "slipfront",
-        &[
+        [
             ("title", "{slipfront}".to_owned()),
             ("author", format!("{{{DEVELOPERS}}}")),
             ("version", tex(&versions(folders))),
@@ -73,7 +69,7 @@ pub fn bibtex(folders: &[Exported], by: &Attribution) -> String {
     text + &entry(
         "article",
         "slipfront-model",
-        &[
+        [
             ("title", format!("{{{ARTICLE_TITLE}}}")),
             (
                 "author",
@@ -90,9 +86,9 @@ pub fn bibtex(folders: &[Exported], by: &Attribution) -> String {
     )
 }
 
-fn entry(kind: &str, key: &str, fields: &[(&str, String)]) -> String {
+fn entry<'f>(kind: &str, key: &str, fields: impl IntoIterator<Item = (&'f str, String)>) -> String {
     let lines = fields
-        .iter()
+        .into_iter()
         .map(|(name, value)| format!("  {name} = {{{value}}},\n"));
     format!("@{kind}{{{key},\n{}}}\n", lines.collect::<String>())
 }
@@ -170,7 +166,7 @@ pub fn cff(folders: &[Exported], by: &Attribution) -> Result<String, ExportError
         let Exported { list, kind, name, .. } = results;
         text += &format!(
             "  - type: other\n    value: {}\n    description: {}\n",
-            quoted(&results.identifier()),
+            quoted(&format!("blake3:{}", results.seal)),
             quoted(&format!("Seal of {list} of the {kind} {name}"))
         );
     }

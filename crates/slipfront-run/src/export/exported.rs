@@ -105,11 +105,11 @@ impl Exported {
     /// changed.
     pub fn run(folder: &Path) -> Result<Self, ExportError> {
         let run = inspect(folder)?;
-        let verdict = verify_run(&run, &AtomicBool::new(false))?;
-        ExportError::expect_none(verdict.differences)?;
+        let check = verify_run(&run, &AtomicBool::new(false))?;
+        ExportError::expect_none(check.differences)?;
         let manifest = run.manifest().map_err(VerifyError::from)?.clone();
         let case = run.case_to_resume().map_err(VerifyError::from)?;
-        let list = ManifestFile::of(folder, MANIFEST).map_err(|error| {
+        let list = ManifestFile::read(folder, MANIFEST).map_err(|error| {
             let (path, why) = (folder.join(MANIFEST), error.to_string());
             VerifyError::from(ManifestError::Unreadable { path, why })
         })?;
@@ -151,11 +151,6 @@ impl Exported {
                 .for_each(below);
             self.actions.push(action);
         }
-    }
-
-    /// The identifier of the results: the seal of their list of checksums.
-    pub(super) fn identifier(&self) -> String {
-        format!("blake3:{}", self.seal)
     }
 
     /// The name of the results, and a description of them if there is one.

@@ -36,13 +36,13 @@ pub struct Parameter {
 pub(super) fn parameters(case: &CaseFile) -> Vec<Parameter> {
     let values = case.values().into_iter();
     values
-        .map(|(key, text)| Parameter::of(key.trim_matches('`'), &text))
+        .map(|(key, text)| Parameter::from_toml(key.trim_matches('`'), &text))
         .collect()
 }
 
 impl Parameter {
     /// A key with its value as TOML, or with a value that is written without quotation marks.
-    pub fn of(key: &str, text: &str) -> Self {
+    pub fn from_toml(key: &str, text: &str) -> Self {
         let key = key.to_owned();
         // Numbers, switches and strings without escapes are JSON as well.
         let value = serde_json::from_str(text).unwrap_or_else(|_| json!(text));

@@ -34,7 +34,12 @@ pub(super) fn metadata(all: &[(&Exported, String)], by: &Attribution, published:
         || json!("No licence is given: ask the authors before using the results."),
         |licence| link(&licence.url),
     );
-    let mut root = json!({
+    let author = by.author.as_ref().map(|author| {
+        let id = author.orcid.as_deref().unwrap_or("#author");
+        (id, json!({"name": author.name}))
+    });
+    let agent = author.as_ref().map(|(id, _)| link(id));
+    let root = json!({
         "name": format!("Friction computed with slipfront: {}", titles.join(", ")),
         "description": format!("Results of slipfront, {MODEL}: cases, curves, fields, tables and pictures with their provenance."),
         "conformsTo": link(PROFILE),
@@ -42,14 +47,8 @@ pub(super) fn metadata(all: &[(&Exported, String)], by: &Attribution, published:
         "license": licence,
         "hasPart": one_or_all(parts.collect()),
         "mentions": one_or_all(actions.map(|action| link(&action_id(action))).collect()),
+        "author": agent,
     });
-    let author = by.author.as_ref().map(|author| {
-        let id = author.orcid.as_deref().unwrap_or("#author");
-        (id, json!({"name": author.name}))
-    });
-    if let Some((id, _)) = &author {
-        root["author"] = link(id);
-    }
     graph.add(
         RO_CRATE,
         "CreativeWork",
@@ -62,7 +61,7 @@ pub(super) fn metadata(all: &[(&Exported, String)], by: &Attribution, published:
         json!({"name": "Process Run Crate", "version": "0.5"}),
     );
     for (results, at) in all {
-        add_results(&mut graph, results, at, author.as_ref().map(|(id, _)| *id));
+        add_results(&mut graph, results, at, agent.as_ref());
     }
     if let Some((id, person)) = author {
         graph.add(id, "Person", person);
@@ -86,14 +85,15 @@ struct Graph {
 }
 
 impl Graph {
-    /// Adds an entity, unless there is one with this identifier.
+    /// Adds an entity with those of these properties that are not null, unless there is one with this
+    /// identifier.
     fn add(&mut self, id: &str, kind: &str, properties: Value) {
         if !self.ids.insert(id.to_owned()) {
             return;
         }
         let mut entity = Map::from_iter([("@id".to_owned(), json!(id)), ("@type".to_owned(), json!(kind))]);
         if let Value::Object(properties) = properties {
-            entity.extend(properties);
+            entity.extend(properties.into_iter().filter(|(_, value)| !value.is_null()));
         }
         self.entities.push(Value::Object(entity));
     }
@@ -158,7 +158,7 @@ fn action_id(action: &Action) -> String {
 }
 
 /// Adds results: their folder, their files and their actions.
-fn add_results(graph: &mut Graph, results: &Exported, at: &str, agent: Option<&str>) {
+fn add_results(graph: &mut Graph, results: &Exported, at: &str, agent: Option<&Value>) {
     if !at.is_empty() {
         let properties = json!({
             "name": results.name,
@@ -182,7 +182,7 @@ fn add_results(graph: &mut Graph, results: &Exported, at: &str, agent: Option<&s
 }
 
 /// Adds an action with its parameters and its program.
-fn add_action(graph: &mut Graph, action: &Action, at: &str, agent: Option<&str>) {
+fn add_action(graph: &mut Graph, action: &Action, at: &str, agent: Option<&Value>) {
     let links = |names: &[String]| -> Vec<Value> {
         let ids = names.iter().map(|name| file_id(at, name));
         ids.map(|id| link(&id)).collect()
@@ -193,28 +193,27 @@ fn add_action(graph: &mut Graph, action: &Action, at: &str, agent: Option<&str>)
         objects.push(link(&id));
         graph.add(&id, "PropertyValue", value_of(parameter));
     }
-    let mut properties = json!({
+    let [start, end] = action.times.each_ref().map(|time| {
+        let time = time.parse::<Timestamp>().ok()?;
+        Some(time.strftime("%Y-%m-%dT%H:%M:%S%.3f+00:00").to_string())
+    });
+    let failed = action
+        .failure
+        .as_ref()
+        .map(|_| "http://schema.org/FailedActionStatus");
+    let properties = json!({
         "name": action.name,
         "description": description(action, at),
         "instrument": link(&add_program(graph, &action.program)),
         "object": one_or_all(objects),
         "result": one_or_all(links(&action.results)),
+        "startTime": start,
+        "endTime": end,
+        "identifier": action.seal.as_ref().map(|seal| format!("blake3:{seal}")),
+        "actionStatus": failed,
+        "error": action.failure,
+        "agent": agent,
     });
-    for (key, time) in ["startTime", "endTime"].into_iter().zip(&action.times) {
-        if let Ok(time) = time.parse::<Timestamp>() {
-            properties[key] = json!(time.strftime("%Y-%m-%dT%H:%M:%S%.3f+00:00").to_string());
-        }
-    }
-    if let Some(seal) = &action.seal {
-        properties["identifier"] = json!(format!("blake3:{seal}"));
-    }
-    if let Some(reason) = &action.failure {
-        properties["actionStatus"] = json!("http://schema.org/FailedActionStatus");
-        properties["error"] = json!(reason);
-    }
-    if let Some(agent) = agent {
-        properties["agent"] = link(agent);
-    }
     graph.add(&action_id(action), "CreateAction", properties);
 }
 
@@ -231,14 +230,8 @@ fn description(action: &Action, at: &str) -> String {
 }
 
 fn value_of(Parameter { key, value, unit }: &Parameter) -> Value {
-    let mut properties = json!({"name": key, "value": value});
-    if let Some((name, code)) = unit {
-        properties["unitText"] = json!(name);
-        if let Some(code) = code {
-            properties["unitCode"] = json!(code);
-        }
-    }
-    properties
+    let (name, code) = unit.map_or((None, None), |(name, code)| (Some(name), code));
+    json!({"name": key, "value": value, "unitText": name, "unitCode": code})
 }
 
 /// Adds a program, and returns its identifier.
@@ -247,17 +240,18 @@ fn add_program(graph: &mut Graph, program: &MadeBy) -> String {
         "#{}",
         encoded(&format!("{}/{}", program.in_words(), program.build))
     );
-    let mut software = json!({
+    let description = match &program.revision {
+        Some(revision) => format!("{MODEL}; built from the git commit {revision}"),
+        None => MODEL.to_owned(),
+    };
+    let software = json!({
         "name": "slipfront",
-        "description": MODEL,
+        "description": description,
         "softwareVersion": program.version,
         "identifier": program.build,
         "author": link("#developers"),
         "citation": link(ARTICLE_URL),
     });
-    if let Some(revision) = &program.revision {
-        software["description"] = json!(format!("{MODEL}; built from the git commit {revision}"));
-    }
     graph.add(&id, "SoftwareApplication", software);
     id
 }

@@ -1,7 +1,6 @@
 //! The content of a fields file, the names in it, and the errors of writing and reading it.
 
 use std::io;
-use std::ops::Range;
 use std::path::PathBuf;
 
 use slipfront::Scales;
@@ -25,19 +24,6 @@ pub(super) const STRIDE: &str = "stride";
 pub(super) const BLOCK_SIZE: &str = "block_size_m";
 pub(super) const TIME_UNIT: &str = "time_unit_s";
 
-/// Arrays that never change in a run, block by block: row-major, the lowest row first, not thinned.
-#[derive(Debug, Clone, Copy)]
-pub struct StaticFields<'a> {
-    /// Whether the block is texture.
-    pub textured: &'a [bool],
-    /// Static friction coefficients.
-    pub mu_static: &'a [f64],
-    /// Kinetic friction coefficients.
-    pub mu_kinetic: &'a [f64],
-    /// Time t* of the first slip; NaN = never slipped.
-    pub first_slip_time_star: &'a [f64],
-}
-
 /// The fields of one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldFrame {
@@ -47,7 +33,7 @@ pub struct FieldFrame {
     pub label: String,
     /// Number of the time step.
     pub step: u64,
-    /// One array per name in [`FieldsFile::names`], in the unit of
+    /// One array per name in [`FieldsData::names`], in the unit of
     /// [`FieldInfo::unit`](slipfront_case::field_info::FieldInfo::unit), thinned by [`thin`] and row-major.
     pub values: Vec<Vec<f32>>,
 }
@@ -87,61 +73,8 @@ impl FieldFrame {
     }
 }
 
-/// The content of `fields.nc`, or the part that is held by a process that shares the lattice with others.
-#[derive(Debug, Clone)]
-pub struct FieldsFile<'a> {
-    /// Number of blocks along x, before thinning.
-    pub nx: usize,
-    /// Number of blocks along y, before thinning.
-    pub ny: usize,
-    /// The rows of blocks with values in this part, before thinning: `0..ny` unless the lattice is shared.
-    pub rows: Range<usize>,
-    /// Every n-th block is kept, in both directions, from block 0 of the lattice on.
-    pub stride: usize,
-    /// Edge of a block, in m.
-    pub block_size: f64,
-    /// Duration of one unit of t*, in s.
-    pub time_unit_s: f64,
-    /// The fields that every frame holds, each at most once.
-    pub names: &'a [Field],
-    /// Arrays that never change, of these rows.
-    pub statics: StaticFields<'a>,
-    /// The instants, in order of time, each with the values of these rows; NetCDF requires that no time
-    /// occurs twice. The list may be empty.
-    pub frames: &'a [FieldFrame],
-}
-
-impl FieldsFile<'_> {
-    /// Number of values along x in the file.
-    pub(super) fn kept_columns(&self) -> usize {
-        kept(0..self.nx, self.stride).len()
-    }
-
-    /// Number of values along y in the file.
-    pub(super) fn kept_rows(&self) -> usize {
-        kept(0..self.ny, self.stride).len()
-    }
-
-    /// The rows of the file that are in this part.
-    pub(super) fn kept_here(&self) -> Range<usize> {
-        kept(self.rows.clone(), self.stride)
-    }
-
-    /// Selects the values that the file keeps from values of the blocks of this part.
-    pub(super) fn keep<T: Copy>(&self, values: &[T]) -> impl Iterator<Item = T> {
-        let skipped = (self.kept_here().start * self.stride - self.rows.start) * self.nx;
-        thin(values.get(skipped..).unwrap_or_default(), self.nx, self.stride)
-    }
-
-    /// Length of the labels, at least 1, because NetCDF has no length 0.
-    pub(super) fn label_length(&self) -> usize {
-        let lengths = self.frames.iter().map(|frame| frame.label.len());
-        lengths.max().unwrap_or(0).max(1)
-    }
-}
-
-/// The contents of a `fields.nc`; every array is row-major and thinned to `columns() * rows()` values, unless
-/// it was reduced further or only some rows were read.
+/// The content of a `fields.nc`; every array is row-major and thinned to `columns() * rows()` values, unless
+/// it was reduced further, or only some rows were read or are held by a process that shares the lattice.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct FieldsData {
     /// Number of blocks along x, before thinning.
@@ -150,11 +83,14 @@ pub struct FieldsData {
     pub ny: usize,
     /// Every n-th block is in the file, in both directions, from block 0 on.
     pub stride: usize,
+    /// The row of the file with which the arrays begin.
+    pub first_row: usize,
     /// Edge of a block, in m.
     pub block_size: f64,
     /// Duration of one unit of t*, in s.
     pub time_unit_s: f64,
-    /// The fields of every frame, in the order of [`FieldFrame::values`]; none if there are no frames.
+    /// The fields of every frame, each once, in the order of [`FieldFrame::values`]; a file without frames
+    /// has none.
     pub names: Vec<Field>,
     /// Whether the block is texture.
     pub textured: Vec<bool>,
@@ -164,7 +100,7 @@ pub struct FieldsData {
     pub mu_kinetic: Vec<f64>,
     /// Time t* of the first slip; NaN = never slipped.
     pub first_slip_time_star: Vec<f64>,
-    /// The instants, in order of time.
+    /// The instants, in order of time; NetCDF requires that no time occurs twice.
     pub frames: Vec<FieldFrame>,
 }
 
@@ -177,6 +113,12 @@ impl FieldsData {
     /// Number of values along y.
     pub fn rows(&self) -> usize {
         kept(0..self.ny, self.stride.max(1)).len()
+    }
+
+    /// Length of the labels, at least 1, because NetCDF has no length 0.
+    pub(super) fn label_length(&self) -> usize {
+        let lengths = self.frames.iter().map(|frame| frame.label.len());
+        lengths.max().unwrap_or(0).max(1)
     }
 }
 
@@ -199,15 +141,6 @@ pub fn thin<T: Copy>(values: &[T], nx: usize, stride: usize) -> impl Iterator<It
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum FieldsError {
-    #[error(
-        "cannot write `{path}`: {what} has {found} values instead of {wanted}; give arrays of the same size"
-    )]
-    Shape {
-        path: PathBuf,
-        what: String,
-        found: usize,
-        wanted: usize,
-    },
     #[error("cannot write `{path}`: {source}; check that the folder exists, is writable and has room")]
     Write { path: PathBuf, source: io::Error },
     #[error("cannot read `{path}`: {source}; check the path and its permissions")]

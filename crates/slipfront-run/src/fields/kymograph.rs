@@ -9,7 +9,7 @@ use super::frame::{BLOCK_SIZE, FieldsError, TIME, TIME_STAR, TIME_UNIT};
 use super::netcdf3::{ExternalType, StoredNumber};
 use super::netcdf3_header::{Attribute, Definition, Variable};
 use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
-use super::read::in_words;
+use super::read::{WHOLE, open};
 use crate::run_files::RunFile;
 
 const PLACE: &str = "place";
@@ -20,22 +20,12 @@ const BIN_WIDTH: &str = "bin_width_m";
 /// The bytes of the file of a run.
 pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
     let (model, scales) = (&case.model, &case.scales);
-    let bins = PositionBins::of(&model.lattice, &model.drive);
-    let data = KymographData::of(kymograph, case);
+    let bins = PositionBins::new(&model.lattice, &model.drive);
+    let data = KymographData::new(kymograph, case);
     let place = match model.drive.rotation {
         None => "distance along the drive",
         Some(_) => "distance from the axis of the rotation",
     };
-    let variable = |name, dimensions: &[usize], kind, long_name: &str, units: &str| Variable {
-        name,
-        dimensions: dimensions.to_vec(),
-        kind,
-        attributes: vec![
-            Attribute::text("long_name", long_name),
-            Attribute::text("units", units),
-        ],
-    };
-    let share = "share of the blocks in contact that slide";
     let definition = Definition {
         records: 0,
         dimensions: vec![(TIME, data.time_star.len()), (PLACE, bins.count)],
@@ -48,23 +38,17 @@ pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
             Attribute::numbers(TIME_UNIT, &[scales.time()]),
         ],
         variables: vec![
-            variable(
-                TIME,
-                &[0],
-                ExternalType::Double,
-                "time since the start of the drive",
-                "s",
-            ),
-            variable(
-                TIME_STAR,
-                &[0],
-                ExternalType::Double,
-                "dimensionless time t*",
-                "1",
-            ),
-            variable(PLACE, &[1], ExternalType::Double, place, "m"),
-            variable(IN_CONTACT, &[1], ExternalType::Double, "blocks in contact", "1"),
-            variable(SLIDING, &[0, 1], ExternalType::Float, share, "1"),
+            Variable::doubles(TIME, &[TIME], "time since the start of the drive", "s"),
+            Variable::doubles(TIME_STAR, &[TIME], "dimensionless time t*", "1"),
+            Variable::doubles(PLACE, &[PLACE], place, "m"),
+            Variable::doubles(IN_CONTACT, &[PLACE], "blocks in contact", "1"),
+            Variable::new(
+                SLIDING,
+                &[TIME, PLACE],
+                ExternalType::Float,
+                "share of the blocks in contact that slide",
+            )
+            .with_text("units", "1"),
         ],
     };
     let mut bytes = definition.header().bytes;
@@ -103,8 +87,8 @@ pub struct KymographData {
 
 impl KymographData {
     /// The content of the file of this run.
-    pub fn of(kymograph: &Kymograph, case: &Case) -> Self {
-        let bins = PositionBins::of(&case.model.lattice, &case.model.drive);
+    pub fn new(kymograph: &Kymograph, case: &Case) -> Self {
+        let bins = PositionBins::new(&case.model.lattice, &case.model.drive);
         let (steps, shares): (Vec<f64>, Vec<Vec<f32>>) = kymograph.rows().unzip();
         let (size, half) = (
             case.scales.block_size,
@@ -129,13 +113,10 @@ impl KymographData {
 
 /// Reads the file of a run.
 pub fn read_kymograph<'f>(file: impl Into<RunFile<'f>>) -> Result<KymographData, FieldsError> {
-    let file = file.into();
-    read(&file).map_err(|error| in_words(error, file.path()))
+    open(&file.into(), read)
 }
 
-fn read(file: &RunFile<'_>) -> Result<KymographData, NetCdfError> {
-    const WHOLE: std::ops::Range<u64> = 0..u64::MAX;
-    let mut file = NetCdf3Reader::open(file)?;
+fn read(file: &mut NetCdf3Reader<'_>) -> Result<KymographData, NetCdfError> {
     for (name, most) in [(TIME, Kymograph::MAX_ROWS), (PLACE, PositionBins::MAX)] {
         let length = file.dimension(name)?;
         if !(1..=most).contains(&length) {

@@ -17,9 +17,11 @@ mod netcdf3_reader;
 mod read;
 mod write;
 
-pub use frame::{FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields, thin};
+pub use frame::{FieldFrame, FieldsData, FieldsError, thin};
 pub use kymograph::{KymographData, kymograph_bytes, read_kymograph};
-pub use read::{Reduction, count_snapshots, few_of, read_fields, read_first_slips, read_maps, read_rows};
+pub use read::{
+    Reduction, choose_snapshots, count_snapshots, read_fields, read_first_slips, read_maps, read_rows,
+};
 pub use write::{FieldsWriter, write_fields};
 
 #[cfg(test)]

@@ -44,7 +44,7 @@ pub(super) enum ExternalType {
 }
 
 impl ExternalType {
-    pub(super) fn of(code: u32) -> Option<ExternalType> {
+    pub(super) fn from_code(code: u32) -> Option<ExternalType> {
         let all = [
             ExternalType::Byte,
             ExternalType::Char,

@@ -41,12 +41,51 @@ impl Attribute {
     }
 }
 
+/// A variable, without its values.
 pub(super) struct Variable {
-    pub(super) name: &'static str,
-    /// Dimensions of the variable, as indices.
-    pub(super) dimensions: Vec<usize>,
-    pub(super) kind: ExternalType,
-    pub(super) attributes: Vec<Attribute>,
+    name: &'static str,
+    /// Names of its dimensions.
+    dimensions: Vec<&'static str>,
+    kind: ExternalType,
+    attributes: Vec<Attribute>,
+}
+
+impl Variable {
+    /// A variable with a name for readers.
+    pub(super) fn new(
+        name: &'static str,
+        dimensions: &[&'static str],
+        kind: ExternalType,
+        long_name: &str,
+    ) -> Self {
+        Self {
+            name,
+            dimensions: dimensions.to_vec(),
+            kind,
+            attributes: vec![Attribute::text("long_name", long_name)],
+        }
+    }
+
+    /// A variable of doubles with a name for readers and a unit.
+    pub(super) fn doubles(
+        name: &'static str,
+        dimensions: &[&'static str],
+        long_name: &str,
+        unit: &str,
+    ) -> Self {
+        Self::new(name, dimensions, ExternalType::Double, long_name).with_text("units", unit)
+    }
+
+    /// The variable with a further attribute.
+    pub(super) fn with<T: StoredNumber>(mut self, name: &'static str, values: &[T]) -> Self {
+        self.attributes.push(Attribute::numbers(name, values));
+        self
+    }
+
+    /// The variable with a further attribute of text.
+    pub(super) fn with_text(self, name: &'static str, text: &str) -> Self {
+        self.with(name, text.as_bytes())
+    }
 }
 
 /// The bytes of a header, and the positions of the values that it defines.
@@ -104,16 +143,23 @@ impl Definition {
     }
 
     fn has_records(&self, variable: &Variable) -> bool {
-        let first = variable.dimensions.first();
-        first.is_some_and(|index| self.dimensions[*index].1 == 0)
+        self.dimensions_of(variable)
+            .next()
+            .is_some_and(|(_, length)| length == 0)
+    }
+
+    /// Number and length of each dimension of a variable.
+    fn dimensions_of(&self, variable: &Variable) -> impl Iterator<Item = (usize, usize)> {
+        let place = |wanted: &&str| self.dimensions.iter().position(|(name, _)| name == wanted);
+        let places = variable.dimensions.iter().filter_map(place);
+        places.map(|place| (place, self.dimensions[place].1))
     }
 
     /// Bytes of a whole variable or of one record of it.
     fn bytes_at_once(&self, variable: &Variable) -> u64 {
-        let lengths = variable
-            .dimensions
-            .iter()
-            .map(|index| self.dimensions[*index].1.max(1) as u64);
+        let lengths = self
+            .dimensions_of(variable)
+            .map(|(_, length)| length.max(1) as u64);
         lengths.product::<u64>() * variable.kind.bytes() as u64
     }
 
@@ -135,9 +181,8 @@ impl Definition {
         bytes.list(VARIABLES, &self.variables, |bytes, variable| {
             bytes.text(variable.name);
             bytes.count(variable.dimensions.len());
-            for index in &variable.dimensions {
-                bytes.count(*index);
-            }
+            self.dimensions_of(variable)
+                .for_each(|(place, _)| bytes.count(place));
             bytes.attributes(&variable.attributes);
             bytes.number(variable.kind as u32);
             bytes.count(self.padded_bytes(variable) as usize);

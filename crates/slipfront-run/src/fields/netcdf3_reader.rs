@@ -34,16 +34,11 @@ pub(super) struct NetCdf3Reader<'f> {
     /// Number of records, one for each instant.
     pub(super) records: usize,
     record_bytes: u64,
-    dimensions: Vec<StoredDimension>,
+    /// Names and lengths; a length of 0 marks the record dimension.
+    dimensions: Vec<(String, usize)>,
     /// Global attributes with their numbers; text counts as numbers too, one per byte.
     attributes: Vec<(String, Vec<f64>)>,
     variables: Vec<StoredVariable>,
-}
-
-/// Length of the dimension; 0 marks the record dimension.
-struct StoredDimension {
-    name: String,
-    length: usize,
 }
 
 struct StoredVariable {
@@ -62,15 +57,10 @@ impl<'f> NetCdf3Reader<'f> {
         file.by_ref().take(HEADER_MAX_BYTES).read_to_end(&mut bytes)?;
         let mut header = HeaderReader::begin(&bytes)?;
         let records = header.count()?;
-        let dimensions = header.list(DIMENSIONS, 8, |header| {
-            Ok(StoredDimension {
-                name: header.name()?,
-                length: header.count()?,
-            })
-        })?;
+        let dimensions = header.list(DIMENSIONS, 8, |header| Ok((header.name()?, header.count()?)))?;
         let attributes = header.list(ATTRIBUTES, 12, HeaderReader::attribute)?;
         let variables = header.list(VARIABLES, 28, |header| header.variable(dimensions.len()))?;
-        each_once(dimensions.iter().map(|dimension| &dimension.name))?;
+        each_once(dimensions.iter().map(|(name, _)| name))?;
         each_once(variables.iter().map(|variable| &variable.name))?;
         let mut reader = Self {
             file,
@@ -114,8 +104,8 @@ impl<'f> NetCdf3Reader<'f> {
 
     /// The length of a dimension; 0 for the record dimension.
     pub(super) fn dimension(&self, name: &str) -> Result<usize, NetCdfError> {
-        match self.dimensions.iter().find(|dimension| dimension.name == name) {
-            Some(dimension) => Ok(dimension.length),
+        match self.dimensions.iter().find(|(known, _)| known == name) {
+            Some((_, length)) => Ok(*length),
             None => broken(format!("it has no dimension `{name}`")),
         }
     }
@@ -180,20 +170,20 @@ impl<'f> NetCdf3Reader<'f> {
 
     fn is_over(&self, variable: &StoredVariable, dimensions: &[&str]) -> bool {
         let ids = variable.dimensions.iter();
-        let names = ids.map(|id| self.dimensions[*id].name.as_str());
+        let names = ids.map(|id| self.dimensions[*id].0.as_str());
         names.eq(dimensions.iter().copied())
     }
 
     fn has_records(&self, variable: &StoredVariable) -> bool {
         let first = variable.dimensions.first();
-        first.is_some_and(|id| self.dimensions[*id].length == 0)
+        first.is_some_and(|id| self.dimensions[*id].1 == 0)
     }
 
     /// The bytes of a whole variable or of one record of it, without padding.
     fn bytes_at_once(&self, variable: &StoredVariable) -> Option<u64> {
         let skipped = usize::from(self.has_records(variable));
         let dimensions = variable.dimensions.iter().skip(skipped);
-        let mut lengths = dimensions.map(|id| self.dimensions[*id].length as u64);
+        let mut lengths = dimensions.map(|id| self.dimensions[*id].1 as u64);
         lengths.try_fold(variable.kind.bytes() as u64, u64::checked_mul)
     }
 }
@@ -283,10 +273,8 @@ impl<'a> HeaderReader<'a> {
 
     fn kind(&mut self) -> Result<ExternalType, NetCdfError> {
         let code = self.code()?;
-        match ExternalType::of(code) {
-            Some(kind) => Ok(kind),
-            None => broken(format!("its header names the unknown type {code}")),
-        }
+        let unknown = || broken(format!("its header names the unknown type {code}"));
+        ExternalType::from_code(code).map_or_else(unknown, Ok)
     }
 
     fn attribute(&mut self) -> Result<(String, Vec<f64>), NetCdfError> {

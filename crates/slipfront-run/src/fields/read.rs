@@ -13,7 +13,7 @@ use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
 use crate::run_files::RunFile;
 
 /// Range of all values of a variable.
-const WHOLE: Range<u64> = 0..u64::MAX;
+pub(super) const WHOLE: Range<u64> = 0..u64::MAX;
 
 /// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written. Variables that slipfront does
 /// not know are skipped.
@@ -24,21 +24,16 @@ pub fn read_fields<'f>(file: impl Into<RunFile<'f>>) -> Result<FieldsData, Field
 /// Reads only these rows of a fields file, as far as they exist, counted from y = 0. This is for a file that
 /// is larger than the memory.
 pub fn read_rows<'f>(file: impl Into<RunFile<'f>>, rows: Range<usize>) -> Result<FieldsData, FieldsError> {
-    let file = file.into();
-    let read = || all_of(&mut NetCdf3Reader::open(&file)?, &rows);
-    read().map_err(|error| in_words(error, file.path()))
-}
-
-/// All content of these rows of a file.
-fn all_of(file: &mut NetCdf3Reader<'_>, rows: &Range<usize>) -> Result<FieldsData, NetCdfError> {
-    let all: Vec<usize> = (0..file.records).collect();
-    let data = read_chosen::<Vec<f32>>(file, |_| true, &all, rows)?;
-    let part = values_of(rows, data.columns());
-    Ok(FieldsData {
-        mu_static: file.values(MU_STATIC, &[Y, X], 0, part.clone())?,
-        mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0, part.clone())?,
-        first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0, part)?,
-        ..data
+    open(&file.into(), |file| {
+        let all: Vec<usize> = (0..file.records).collect();
+        let data = read_chosen::<Vec<f32>>(file, |_| true, &all, &rows)?;
+        let part = values_of(&rows, data.columns());
+        Ok(FieldsData {
+            mu_static: file.values(MU_STATIC, &[Y, X], 0, part.clone())?,
+            mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0, part.clone())?,
+            first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0, part)?,
+            ..data
+        })
     })
 }
 
@@ -50,7 +45,7 @@ fn values_of(rows: &Range<usize>, columns: usize) -> Range<u64> {
 /// Reduction of the values of a field or of the texture while they are read, row after row.
 pub trait Reduction {
     /// Begins the reduction of an array with rows of `columns` values, and with `rows` rows.
-    fn of(columns: usize, rows: usize) -> Self;
+    fn begin(columns: usize, rows: usize) -> Self;
 
     /// Adds the next values.
     fn add(&mut self, values: impl Iterator<Item = f32>);
@@ -61,7 +56,7 @@ pub trait Reduction {
 
 /// The reduction that keeps all values.
 impl Reduction for Vec<f32> {
-    fn of(_: usize, _: usize) -> Self {
+    fn begin(_: usize, _: usize) -> Self {
         Self::new()
     }
 
@@ -83,25 +78,21 @@ pub fn read_maps<'f, R: Reduction>(
     field: Field,
     choose: impl Fn(&[String]) -> Vec<usize>,
 ) -> Result<FieldsData, FieldsError> {
-    let from = file.into();
-    let read = || {
-        let mut file = NetCdf3Reader::open(&from)?;
-        let labels = (0..file.records).map(|record| read_label(&mut file, record));
+    open(&file.into(), |file| {
+        let labels = (0..file.records).map(|record| read_label(file, record));
         let chosen = choose(&labels.collect::<Result<Vec<_>, _>>()?);
-        read_chosen::<R>(&mut file, |name| name == field, &chosen, &(0..usize::MAX))
-    };
-    read().map_err(|error| in_words(error, from.path()))
+        read_chosen::<R>(file, |name| name == field, &chosen, &(0..usize::MAX))
+    })
 }
 
 /// The number of snapshots in a file.
 pub fn count_snapshots(path: &Path) -> Result<usize, FieldsError> {
-    let file = NetCdf3Reader::open(&path.into()).map_err(|error| in_words(error, path))?;
-    Ok(file.records)
+    open(&path.into(), |file| Ok(file.records))
 }
 
 /// The numbers of at most `most` snapshots with these letters: all snapshots if there are no more; otherwise
 /// those that have letters, or, if these are none or too many, `most` snapshots spread over the run.
-pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
+pub fn choose_snapshots(labels: &[String], most: usize) -> Vec<usize> {
     let (count, shown) = (labels.len(), labels.len().min(most));
     let instants: Vec<usize> = (0..count).filter(|&k| !labels[k].is_empty()).collect();
     match instants.len() {
@@ -113,11 +104,10 @@ pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
 /// Reads the times of the first slips in place of fields, [reduced](Reduction) while they are read, and the
 /// texture in the same way. The times are the only array of the only frame.
 pub fn read_first_slips<R: Reduction>(from: &RunFile<'_>) -> Result<FieldsData, FieldsError> {
-    let read = || {
-        let mut file = NetCdf3Reader::open(from)?;
+    open(from, |file| {
         let all = 0..usize::MAX;
-        let mut data = read_chosen::<R>(&mut file, |_| false, &[], &all)?;
-        let times = read_reduced::<R>(&mut file, FIRST_SLIP, &[Y, X], 0, &all, |value| value as f32)?;
+        let mut data = read_chosen::<R>(file, |_| false, &[], &all)?;
+        let times = read_reduced::<R>(file, FIRST_SLIP, &[Y, X], 0, &all, |value| value as f32)?;
         data.frames = vec![FieldFrame {
             time_star: 0.0,
             label: String::new(),
@@ -125,19 +115,23 @@ pub fn read_first_slips<R: Reduction>(from: &RunFile<'_>) -> Result<FieldsData, 
             values: vec![times],
         }];
         Ok(data)
-    };
-    read().map_err(|error| in_words(error, from.path()))
+    })
 }
 
-pub(super) fn in_words(error: NetCdfError, path: &Path) -> FieldsError {
-    let path = path.to_owned();
-    match error {
-        NetCdfError::Io(source) => FieldsError::Read { path, source },
+/// Opens a file and reads something of it.
+pub(super) fn open<'f, T>(
+    file: &RunFile<'f>,
+    read: impl FnOnce(&mut NetCdf3Reader<'f>) -> Result<T, NetCdfError>,
+) -> Result<T, FieldsError> {
+    let found = NetCdf3Reader::open(file).and_then(|mut file| read(&mut file));
+    let path = || file.path().to_owned();
+    found.map_err(|error| match error {
+        NetCdfError::Io(source) => FieldsError::Read { path: path(), source },
         NetCdfError::Broken(detail) => FieldsError::Broken {
-            path,
+            path: path(),
             detail: text::single_line(&detail),
         },
-    }
+    })
 }
 
 /// Some fields at some instants, and the texture; the other arrays are left empty.
@@ -179,6 +173,7 @@ fn read_chosen<R: Reduction>(
         nx,
         ny,
         stride,
+        first_row: rows.start,
         block_size,
         time_unit_s,
         names,
@@ -235,7 +230,7 @@ fn read_reduced<R: Reduction>(
     value: impl Fn(f64) -> f32,
 ) -> Result<Vec<f32>, NetCdfError> {
     let (columns, there) = (file.dimension(X)?, file.dimension(Y)?);
-    let mut reduced = R::of(columns, rows.end.min(there).saturating_sub(rows.start));
+    let mut reduced = R::begin(columns, rows.end.min(there).saturating_sub(rows.start));
     file.read(name, dimensions, record, values_of(rows, columns), |piece| {
         reduced.add(piece.iter().map(|&number| value(number)));
     })?;

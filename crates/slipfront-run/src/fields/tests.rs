@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use slipfront::observe::Field;
+use slipfront::observe::frames::kept;
 
 use slipfront::communicator::Alone;
 
@@ -14,7 +15,7 @@ use super::*;
 use slipfront_case::field_info::{field_info, field_named};
 
 /// Writes a file through a temporary one next to it.
-fn write(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
+fn write(path: &Path, file: &FieldsData) -> Result<(), FieldsError> {
     let written = write_fields(path.parent().unwrap(), path, file, &Alone)?.unwrap();
     written.persist(path).map_err(|error| FieldsError::Write {
         path: path.to_owned(),
@@ -62,24 +63,21 @@ fn lattice() -> Lattice {
 }
 
 impl Lattice {
-    fn file<'a>(&'a self, stride: usize, names: &'a [Field], frames: &'a [FieldFrame]) -> FieldsFile<'a> {
-        let statics = StaticFields {
-            textured: &self.textured,
-            mu_static: &self.mu_static,
-            mu_kinetic: &self.mu_kinetic,
-            first_slip_time_star: &self.first_slip,
-        };
-        let (block_size, time_unit_s) = (1e-6, 3.162e-10);
-        FieldsFile {
+    fn file(&self, stride: usize, names: &[Field], frames: &[FieldFrame]) -> FieldsData {
+        let thinned = |values: &[f64]| thin(values, NX, stride).collect();
+        FieldsData {
             nx: NX,
             ny: NY,
-            rows: 0..NY,
             stride,
-            block_size,
-            time_unit_s,
-            names,
-            statics,
-            frames,
+            first_row: 0,
+            block_size: 1e-6,
+            time_unit_s: 3.162e-10,
+            names: names.to_vec(),
+            textured: thin(&self.textured, NX, stride).collect(),
+            mu_static: thinned(&self.mu_static),
+            mu_kinetic: thinned(&self.mu_kinetic),
+            first_slip_time_star: thinned(&self.first_slip),
+            frames: frames.to_vec(),
         }
     }
 }
@@ -166,7 +164,8 @@ fn maps_are_one_field_at_a_few_instants() {
         (3, vec![0, 1, 2]),
         (9, vec![0, 1, 2]),
     ] {
-        let maps = read_maps::<Vec<f32>>(&path, Field::Traction, |labels| few_of(labels, most)).unwrap();
+        let maps =
+            read_maps::<Vec<f32>>(&path, Field::Traction, |labels| choose_snapshots(labels, most)).unwrap();
         assert_eq!(maps.names, [Field::Traction]);
         assert_eq!(maps.textured, lattice.textured);
         let wanted = instants
@@ -175,18 +174,18 @@ fn maps_are_one_field_at_a_few_instants() {
         let found = maps.frames.iter().map(|frame| (frame.step, &frame.values[0]));
         assert!(found.eq(wanted), "{most}");
     }
-    let maps = read_maps::<Vec<f32>>(&path, Field::VelocityX, |labels| few_of(labels, 6)).unwrap();
+    let maps = read_maps::<Vec<f32>>(&path, Field::VelocityX, |labels| choose_snapshots(labels, 6)).unwrap();
     assert!(maps.names.is_empty());
 }
 
 #[test]
 fn of_many_snapshots_those_with_letters_are_shown() {
     let labels = ["", "A", "", "B, C", "", ""].map(str::to_owned);
-    assert_eq!(few_of(&labels, 6), [0, 1, 2, 3, 4, 5]);
-    assert_eq!(few_of(&labels, 3), [1, 3]);
-    assert_eq!(few_of(&labels, 1), [0]);
-    assert_eq!(few_of(&labels[4..], 1), [0]);
-    assert_eq!(few_of(&[], 6), [0; 0]);
+    assert_eq!(choose_snapshots(&labels, 6), [0, 1, 2, 3, 4, 5]);
+    assert_eq!(choose_snapshots(&labels, 3), [1, 3]);
+    assert_eq!(choose_snapshots(&labels, 1), [0]);
+    assert_eq!(choose_snapshots(&labels[4..], 1), [0]);
+    assert_eq!(choose_snapshots(&[], 6), [0; 0]);
 }
 
 #[test]
@@ -247,78 +246,11 @@ fn the_header_is_netcdf_3() {
 }
 
 #[test]
+#[should_panic(expected = "other lengths")]
 fn arrays_of_another_length_are_refused() {
-    let lattice = lattice();
-    let names = [Field::Traction, Field::Sliding];
-    let good = frames(&names, 1);
-    let (_folder, path) = folder();
-    let refused = |file: &FieldsFile, wanted: &str| {
-        let text = write(&path, file).unwrap_err().to_string();
-        assert!(text.contains(wanted), "{text}");
-        assert!(!path.exists());
-    };
-    let file = lattice.file(1, &names, &good);
-    refused(
-        &FieldsFile {
-            nx: 0,
-            ..file.clone()
-        },
-        "x has 0 values instead of 1",
-    );
-    refused(
-        &FieldsFile {
-            rows: 1..4,
-            ..file.clone()
-        },
-        "the rows up to the last has 4 values instead of 3",
-    );
-    refused(
-        &FieldsFile {
-            stride: 0,
-            ..file.clone()
-        },
-        "`output.stride` has 0 values",
-    );
-    refused(
-        &FieldsFile {
-            nx: 6,
-            ..file.clone()
-        },
-        "textured has 15 values instead of 18",
-    );
-    refused(
-        &FieldsFile {
-            stride: 2,
-            ..file.clone()
-        },
-        "traction has 15 values instead of 6",
-    );
-    refused(
-        &FieldsFile {
-            names: &names[..1],
-            ..file.clone()
-        },
-        "a frame has 2 values instead of 1",
-    );
-    let statics = StaticFields {
-        mu_kinetic: &lattice.mu_kinetic[1..],
-        ..file.statics
-    };
-    refused(
-        &FieldsFile {
-            statics,
-            ..file.clone()
-        },
-        "mu_kinetic has 14 values instead of 15",
-    );
-    let twice = [Field::Sliding, Field::Sliding];
-    refused(
-        &FieldsFile {
-            names: &twice,
-            ..file.clone()
-        },
-        "the list of fields has 2 values instead of 1",
-    );
+    let mut file = lattice().file(1, &[Field::Traction], &frames(&[Field::Traction], 1));
+    file.mu_kinetic.pop();
+    FieldsWriter::new(&file);
 }
 
 /// An output that is full after some bytes, or that fails when it is flushed.
@@ -356,7 +288,7 @@ fn a_full_disk_is_reported_wherever_it_happens() {
     let lattice = lattice();
     let frames = frames(&Field::ALL, 1);
     let file = lattice.file(1, &Field::ALL, &frames);
-    let writer = FieldsWriter::new(Path::new("fields.nc"), &file).unwrap();
+    let writer = FieldsWriter::new(&file);
     let write_to = |room: u64, flushes: bool| {
         let output = Cursor::new(Vec::new());
         let mut full = Full {
@@ -578,25 +510,22 @@ fn rows_that_are_written_apart_give_the_same_file() {
         for ends in [vec![0, 1, 2, 3], vec![0, 2, 3], vec![0, 0, 3], vec![0, 3]] {
             let mut apart = Cursor::new(Vec::new());
             for rows in ends.windows(2).rev() {
-                let blocks = rows[0] * NX..rows[1] * NX;
-                let kept = rows[0].div_ceil(stride)..rows[1].div_ceil(stride);
-                let columns = NX.div_ceil(stride);
-                let mut frames = frames.clone();
-                for values in frames.iter_mut().flat_map(|frame| &mut frame.values) {
-                    *values = values[kept.start * columns..kept.end * columns].to_vec();
+                let kept = kept(rows[0]..rows[1], stride);
+                let values = kept.start * file.columns()..kept.end * file.columns();
+                let mut part = file.clone();
+                part.first_row = kept.start;
+                part.textured = part.textured[values.clone()].to_vec();
+                for array in [
+                    &mut part.mu_static,
+                    &mut part.mu_kinetic,
+                    &mut part.first_slip_time_star,
+                ] {
+                    *array = array[values.clone()].to_vec();
                 }
-                let part = FieldsFile {
-                    rows: rows[0]..rows[1],
-                    statics: StaticFields {
-                        textured: &lattice.textured[blocks.clone()],
-                        mu_static: &lattice.mu_static[blocks.clone()],
-                        mu_kinetic: &lattice.mu_kinetic[blocks.clone()],
-                        first_slip_time_star: &lattice.first_slip[blocks],
-                    },
-                    frames: &frames,
-                    ..file.clone()
-                };
-                let writer = FieldsWriter::new(&path, &part).unwrap();
+                for field in part.frames.iter_mut().flat_map(|frame| &mut frame.values) {
+                    *field = field[values.clone()].to_vec();
+                }
+                let writer = FieldsWriter::new(&part);
                 // Any process may create the file, at any time.
                 if rows[1] == NY {
                     writer.create(&mut apart).unwrap();
@@ -613,7 +542,7 @@ fn rows_that_are_written_apart_give_the_same_file() {
 #[test]
 fn the_bytes_of_a_file_are_pinned() {
     let lattice = lattice();
-    let hash = |file: &FieldsFile| {
+    let hash = |file: &FieldsData| {
         let (_folder, path) = folder();
         write(&path, file).unwrap();
         let mut bytes = fs::read(&path).unwrap();

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use slipfront::communicator::Communicator;
 use slipfront::observe::Field;
-use slipfront_base::ordered::map_of;
 use slipfront_case::field_info::field_info;
 use tempfile::TempPath;
 
@@ -29,48 +28,50 @@ const SHORT_PADDING: [u8; 2] = [0x80, 0x01];
 ///
 /// # Errors
 ///
-/// [`FieldsError`] if an array does not have the length that the sizes require, or the file cannot be written
-/// in full, on any rank.
+/// [`FieldsError::Write`] if the file cannot be written in full, on any rank.
 pub fn write_fields(
     temporary: &Path,
     path: &Path,
-    file: &FieldsFile,
+    file: &FieldsData,
     communicator: &dyn Communicator,
 ) -> Result<Option<TempPath>, FieldsError> {
-    let writer = FieldsWriter::new(path, file)?;
-    let failed = |source| FieldsError::Write {
-        path: path.to_owned(),
-        source,
-    };
-    write_shared(
+    let writer = FieldsWriter::new(file);
+    let written = write_shared(
         temporary,
         communicator,
         |output| writer.create(output),
         |output| writer.write_rows(output),
-    )
-    .map_err(failed)
+    );
+    written.map_err(|source| FieldsError::Write {
+        path: path.to_owned(),
+        source,
+    })
 }
 
 /// A fields file with a known layout, so that processes that each hold some rows of the lattice can write it
 /// together: one of them [creates](Self::create) it, and each [writes its rows](Self::write_rows) into it.
 pub struct FieldsWriter<'a> {
-    file: &'a FieldsFile<'a>,
+    file: &'a FieldsData,
     header: HeaderBytes,
 }
 
 impl<'a> FieldsWriter<'a> {
-    /// Computes the layout of the file that will be at `path`. It depends only on the sizes, so it is the
-    /// same in every process.
+    /// Computes the layout of the file. It depends only on the sizes, so it is the same in every process.
     ///
-    /// # Errors
-    ///
-    /// [`FieldsError::Shape`] if an array does not have the length that the sizes require.
-    pub fn new(path: &Path, file: &'a FieldsFile<'a>) -> Result<Self, FieldsError> {
-        check(path, file)?;
-        Ok(Self {
+    /// # Panics
+    /// If an array has another length than the others.
+    pub fn new(file: &'a FieldsData) -> Self {
+        let coefficients = [&file.mu_static, &file.mu_kinetic, &file.first_slip_time_star].map(Vec::len);
+        let fields = file.frames.iter().flat_map(|frame| &frame.values).map(Vec::len);
+        let is_alike = |length: usize| length == file.textured.len();
+        assert!(
+            coefficients.into_iter().chain(fields).all(is_alike),
+            "arrays of a file have other lengths than its texture"
+        );
+        Self {
             file,
             header: define(file).header(),
-        })
+        }
     }
 
     /// Writes everything except the values of blocks, which may have been written before.
@@ -85,7 +86,7 @@ impl<'a> FieldsWriter<'a> {
                 (Y, _) => write_at(&mut output, place, 0, centers(file.ny, file))?,
                 (X, _) => write_at(&mut output, place, 0, centers(file.nx, file))?,
                 (TEXTURED, _) => {
-                    let flags = file.kept_rows() * file.kept_columns();
+                    let flags = file.rows() * file.columns();
                     let padding = i16::from_be_bytes(SHORT_PADDING);
                     write_at(&mut output, place, flags, (0..place.padding / 2).map(|_| padding))?;
                 }
@@ -107,22 +108,22 @@ impl<'a> FieldsWriter<'a> {
 
     /// Writes the rows of blocks that this process holds, of every variable and every instant.
     pub fn write_rows(&self, output: impl Write + Seek) -> io::Result<()> {
-        let (file, statics) = (self.file, &self.file.statics);
+        let file = self.file;
         let mut output = BufWriter::with_capacity(BUFFER, output);
         // Number of values before the first of these rows.
-        let before = file.kept_here().start * file.kept_columns();
+        let before = file.first_row * file.columns();
         for place in &self.header.places {
             match place.variable {
                 TEXTURED => {
-                    let flags = file.keep(statics.textured).map(i16::from);
+                    let flags = file.textured.iter().map(|flag| i16::from(*flag));
                     write_at(&mut output, place, before, flags)?;
                 }
-                MU_STATIC => write_at(&mut output, place, before, file.keep(statics.mu_static))?,
-                MU_KINETIC => write_at(&mut output, place, before, file.keep(statics.mu_kinetic))?,
+                MU_STATIC => write_at(&mut output, place, before, file.mu_static.iter().copied())?,
+                MU_KINETIC => write_at(&mut output, place, before, file.mu_kinetic.iter().copied())?,
                 FIRST_SLIP => {
                     // All NaN become the same one, because sign and payload depend on the machine.
-                    let one_nan = |time: f64| if time.is_nan() { f64::NAN } else { time };
-                    let times = file.keep(statics.first_slip_time_star).map(one_nan);
+                    let one_nan = |time: &f64| if time.is_nan() { f64::NAN } else { *time };
+                    let times = file.first_slip_time_star.iter().map(one_nan);
                     write_at(&mut output, place, before, times)?;
                 }
                 name => {
@@ -153,48 +154,8 @@ fn write_at<T: StoredNumber>(
     values.try_for_each(|value| output.write_all(value.encode().as_ref()))
 }
 
-fn check(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
-    let expect = |what: &str, found: usize, wanted: usize| {
-        if found == wanted {
-            Ok(())
-        } else {
-            Err(FieldsError::Shape {
-                path: path.to_owned(),
-                what: what.to_owned(),
-                found,
-                wanted,
-            })
-        }
-    };
-    for (what, size) in [("x", file.nx), ("y", file.ny), ("`output.stride`", file.stride)] {
-        // The header stores them with 32 bits.
-        expect(what, size, size.clamp(1, i32::MAX as usize))?;
-    }
-    let different = map_of(file.names.iter().map(|field| (field, ())));
-    expect("the list of fields", file.names.len(), different.len())?;
-    let rows = &file.rows;
-    expect(
-        "the rows up to the last",
-        rows.end,
-        rows.end.max(rows.start).min(file.ny),
-    )?;
-    let (statics, blocks) = (&file.statics, rows.len() * file.nx);
-    expect(TEXTURED, statics.textured.len(), blocks)?;
-    expect(MU_STATIC, statics.mu_static.len(), blocks)?;
-    expect(MU_KINETIC, statics.mu_kinetic.len(), blocks)?;
-    expect(FIRST_SLIP, statics.first_slip_time_star.len(), blocks)?;
-    for frame in file.frames {
-        expect("a frame", frame.values.len(), file.names.len())?;
-        for (name, values) in file.names.iter().zip(&frame.values) {
-            let wanted = file.kept_columns() * file.kept_here().len();
-            expect(field_info(*name).name, values.len(), wanted)?;
-        }
-    }
-    Ok(())
-}
-
 /// The centres of the blocks that are kept along one axis, in m.
-fn centers(blocks: usize, file: &FieldsFile) -> impl Iterator<Item = f64> {
+fn centers(blocks: usize, file: &FieldsData) -> impl Iterator<Item = f64> {
     let kept = (0..blocks).step_by(file.stride);
     kept.map(|block| (block as f64 + 0.5) * file.block_size)
 }

@@ -76,7 +76,7 @@ enum Amount {
 }
 
 impl Amount {
-    fn of(&self, friction: Measure) -> Result<f64, String> {
+    fn value(&self, friction: Measure) -> Result<f64, String> {
         match self {
             Self::Si(value) => Ok(*value),
             Self::WithUnit(text) => friction.parse(text),
@@ -117,12 +117,17 @@ fn positive(key: &'static str, value: f64) -> Result<f64, InstrumentError> {
     )
 }
 
+/// A number within the bounds, if there is one.
+fn optional(key: &'static str, value: Option<f64>) -> Result<Option<f64>, InstrumentError> {
+    value.map(|value| positive(key, value)).transpose()
+}
+
 impl InstrumentKeys {
     /// Keys of a table.
     ///
     /// # Errors
     /// When a key is unknown, or its value has another type.
-    pub fn of(table: &Table) -> Result<Self, InstrumentError> {
+    pub fn from_table(table: &Table) -> Result<Self, InstrumentError> {
         let read = table.clone().try_into();
         read.map_err(|error: toml::de::Error| InstrumentError::Table(error.message().to_owned()))
     }
@@ -136,7 +141,7 @@ impl InstrumentKeys {
         let file = |why: String| InstrumentError::File(format!("{}: {why}", path.display()));
         let table = text.parse::<Table>().map_err(|error| file(error.to_string()))?;
         match table.get(TABLE).and_then(toml::Value::as_table) {
-            Some(table) => Self::of(table).map_err(|error| file(error.to_string())),
+            Some(table) => Self::from_table(table).map_err(|error| file(error.to_string())),
             None => Err(file(format!("there is no table [{TABLE}]"))),
         }
     }
@@ -146,18 +151,14 @@ impl InstrumentKeys {
     /// # Errors
     /// When a value is out of bounds, or keys cannot be combined.
     pub fn instrument(&self, friction: Measure) -> Result<Instrument, InstrumentError> {
-        let sampling = self
-            .sampling
-            .as_ref()
-            .map(|rate| positive("sampling", rate.si()))
-            .transpose()?;
+        let sampling = optional("sampling", self.sampling.as_ref().map(Rate::si))?;
         let gain = self.gain.unwrap_or(1.0);
         if gain == 0.0 {
             return refuse("gain", "0 removes the whole friction signal");
         }
         positive("gain", gain.abs())?;
         let amount = |key: &'static str, amount: &Amount| {
-            let value = amount.of(friction).or_else(|why| refuse(key, why))?;
+            let value = amount.value(friction).or_else(|why| refuse(key, why))?;
             if value != 0.0 {
                 positive(key, value.abs())?;
             }
@@ -220,16 +221,8 @@ impl InstrumentKeys {
     }
 
     fn filter(&self) -> Result<Option<Filter>, InstrumentError> {
-        let cutoff = self
-            .cutoff
-            .as_ref()
-            .map(|rate| positive("cutoff", rate.si()))
-            .transpose()?;
-        let time = self
-            .time
-            .as_ref()
-            .map(|time| positive("time", time.si()))
-            .transpose()?;
+        let cutoff = optional("cutoff", self.cutoff.as_ref().map(Rate::si))?;
+        let time = optional("time", self.time.as_ref().map(Duration::si))?;
         let Some(filter) = self.filter else {
             let given = [
                 ("cutoff", cutoff.is_some()),

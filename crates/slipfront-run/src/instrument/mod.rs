@@ -22,7 +22,7 @@ mod tests {
     use crate::measured::Measure;
 
     fn instrument(keys: &str) -> Instrument {
-        InstrumentKeys::of(&keys.parse().unwrap())
+        InstrumentKeys::from_table(&keys.parse().unwrap())
             .unwrap()
             .instrument(Measure::Force)
             .unwrap()
@@ -142,8 +142,8 @@ mod tests {
     #[test_case("range = [1, 1]", "`range`"; "empty range")]
     #[test_case("cuttoff = '1 Hz'", "unknown"; "unknown key")]
     fn what_is_wrong_is_said(keys: &str, sentence: &str) {
-        let made =
-            InstrumentKeys::of(&keys.parse().unwrap()).and_then(|keys| keys.instrument(Measure::Force));
+        let made = InstrumentKeys::from_table(&keys.parse().unwrap())
+            .and_then(|keys| keys.instrument(Measure::Force));
         let error = made.unwrap_err().to_string();
         assert!(error.contains(sentence), "{error}");
     }

@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
+use serde::Serialize;
 use slipfront_case::table::{HEAD_BYTES, TableLayout, TableOptions};
 
+use super::column_names::{ColumnName, is_coefficient, units_of};
 use super::error::MeasuredError;
 use super::measure::Measure;
-use super::names::{ColumnName, is_coefficient, units_of};
 use super::workbook;
 
 /// A column of a table.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TableColumn {
     /// Name of the column without its unit; its number from 1 if the table has no names.
     pub name: String,
@@ -23,7 +24,7 @@ impl TableColumn {
     fn has(&self, measure: Measure) -> bool {
         self.unit.as_ref().is_some_and(|unit| {
             let is_small = measure == Measure::Force && ["n", "kn"].contains(&unit.as_str());
-            is_small || measure.factor(unit).is_some()
+            is_small || measure.has_unit(unit)
         })
     }
 
@@ -53,24 +54,14 @@ impl TableColumn {
 pub fn columns_of(bytes: &[u8], path: &Path) -> Result<Vec<TableColumn>, MeasuredError> {
     let head = &bytes[..bytes.len().min(HEAD_BYTES as usize)];
     if workbook::is_workbook(head) {
-        let sheet = workbook::sheet(bytes).map_err(|why| MeasuredError::Workbook {
-            path: path.to_owned(),
-            why,
-        })?;
+        let sheet = workbook::sheet(bytes, path)?;
         let mut columns = columns_of(sheet.text.as_bytes(), path)?;
         for (column, [_, has_percentages]) in columns.iter_mut().zip(&sheet.shown) {
             column.unit = column.unit.take().or(has_percentages.then(|| "%".to_owned()));
         }
         return Ok(columns);
     }
-    let layout = TableLayout::find(head, TableOptions::default()).and_then(|layout| {
-        layout.check_names()?;
-        Ok(layout)
-    });
-    let layout = layout.map_err(|source| MeasuredError::Table {
-        path: path.to_owned(),
-        source,
-    })?;
+    let layout = layout_of(head, path, TableOptions::default())?;
     let names = ColumnName::all(&layout);
     let units = units_of(&layout, &names);
     let column = |place: usize| TableColumn {
@@ -81,6 +72,17 @@ pub fn columns_of(bytes: &[u8], path: &Path) -> Result<Vec<TableColumn>, Measure
         unit: units.get(place).cloned().flatten(),
     };
     Ok((0..layout.columns).map(column).collect())
+}
+
+/// The layout of a table that begins with `head`.
+pub(super) fn layout_of(
+    head: &[u8],
+    path: &Path,
+    options: TableOptions,
+) -> Result<TableLayout, MeasuredError> {
+    let layout = TableLayout::find(head, options).map_err(MeasuredError::of_table(path))?;
+    layout.check_names().map_err(MeasuredError::of_table(path))?;
+    Ok(layout)
 }
 
 /// The columns that form a record, judged by their units and names. The first one is the first column of
@@ -102,7 +104,7 @@ pub fn suggested(columns: &[TableColumn]) -> Option<[usize; 2]> {
 
 /// Whether abscissae in this unit are displacements.
 pub fn is_displacement(unit: &str) -> bool {
-    Measure::Displacement.factor(unit).is_some()
+    Measure::Displacement.has_unit(unit)
 }
 
 #[cfg(test)]

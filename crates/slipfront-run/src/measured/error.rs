@@ -1,6 +1,6 @@
 //! Reasons why a table is not a record.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use slipfront_base::text::display_path;
 use slipfront_case::nearest::why_unread;
@@ -11,28 +11,6 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum MeasuredError {
-    #[error("cannot read {}: {}", display_path(path), why_unread(path, source))]
-    Unreadable { path: PathBuf, source: std::io::Error },
-    #[error("{} {source}", display_path(path))]
-    Table { path: PathBuf, source: TableError },
-    #[error("{} {why}", display_path(path))]
-    Workbook { path: PathBuf, why: String },
-    #[error(
-        "{} has `{name}` in several columns, {columns}: give the number of a column, such as {number}",
-        display_path(path)
-    )]
-    Several {
-        path: PathBuf,
-        name: String,
-        columns: String,
-        number: usize,
-    },
-    #[error("{} has no column `{name}`: {known}", display_path(path))]
-    Column {
-        path: PathBuf,
-        name: String,
-        known: String,
-    },
     #[error(
         "column `{column}` of {} has no unit: give it with --{axis}-unit, such as `--{axis}-unit {example}`",
         display_path(path)
@@ -57,64 +35,28 @@ pub enum MeasuredError {
         axis: &'static str,
         example: Option<&'static str>,
     },
-    #[error(
-        "column `{column}` of {} {why}: give its cells the number format General, and the column the unit that they then have",
-        display_path(path)
-    )]
-    Percentages {
-        path: PathBuf,
-        column: String,
-        why: &'static str,
-    },
-    #[error("the unit of column `{column}` of {}: {why}", display_path(path))]
-    Unit {
-        path: PathBuf,
-        column: String,
-        why: String,
-    },
-    #[error(
-        "line {line} of {}, {text:?}, has no number in column `{column}`: write one, remove the line, begin it with #, or choose one of several \
-         segments by `segment`",
-        display_path(path)
-    )]
-    NoNumber {
-        path: PathBuf,
-        line: u64,
-        text: String,
-        column: String,
-    },
-    #[error(
-        "line {line} of {} has {value:e} in column `{column}`, as meters write where their range is exceeded: remove such lines, \
-         or begin them with #",
-        display_path(path)
-    )]
-    Overload {
-        path: PathBuf,
-        line: u64,
-        column: String,
-        value: f64,
-    },
-    #[error(
-        "line {line} of {}: the time or displacement decreases from {before} to {value} in SI units; keep the lines of a single \
-         step of the test, such as by `segment`",
-        display_path(path)
-    )]
-    Falls {
-        path: PathBuf,
-        line: u64,
-        before: f64,
-        value: f64,
-    },
-    #[error(
-        "{} has {found} lines of numbers; a record needs at least two",
-        display_path(path)
-    )]
-    TooShort { path: PathBuf, found: usize },
-    #[error(
-        "{} has the same time or displacement, {at} in SI units, in all lines: choose another column",
-        display_path(path)
-    )]
-    NoLength { path: PathBuf, at: f64 },
+    #[error("{0}")]
+    Refused(String),
+}
+
+impl MeasuredError {
+    /// Refuses a table for a reason that no caller words in another way: a sentence that names its path.
+    pub(super) fn refuse<T>(sentence: String) -> Result<T, Self> {
+        Err(Self::Refused(sentence))
+    }
+
+    /// The error of a file that cannot be read.
+    pub(super) fn unreadable(path: &Path) -> impl Fn(std::io::Error) -> Self {
+        move |source| {
+            let why = why_unread(path, &source);
+            Self::Refused(format!("cannot read {}: {why}", display_path(path)))
+        }
+    }
+
+    /// The error of a text that is no table.
+    pub(super) fn of_table(path: &Path) -> impl Fn(TableError) -> Self {
+        move |source| Self::Refused(format!("{} {source}", display_path(path)))
+    }
 }
 
 /// The end of a sentence on a unit that is missing: an example of an option.

@@ -1,9 +1,11 @@
 //! Quantities of columns, and their units as instruments write them.
 
+use serde::Serialize;
 use slipfront_case::quantity::{Duration, Force, Length};
 
 /// Quantity of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Measure {
     /// Time, s.
     Time,
@@ -86,47 +88,49 @@ impl Measure {
         let is_of_number = |character: char| character.is_ascii_digit() || character == '.';
         let end = text.rfind(is_of_number).map_or(0, |at| at + 1);
         let (number, unit) = text.split_once(' ').unwrap_or_else(|| text.split_at(end));
-        let number = number.parse::<f64>().ok().filter(|number| number.is_finite());
-        match (number, self.factor(unit.trim())) {
-            (Some(_), None) if unit.trim().is_empty() => {
-                Err(format!("{text:?} has no unit: write it as \"2 {}\"", self.unit()))
-            }
-            (Some(number), Some(factor)) => Ok(number * factor),
-            (Some(_), None) => Err(self.no_such_unit(unit.trim())),
-            (None, _) => Err(format!(
+        let (number, unit) = (number.parse::<f64>().ok(), unit.trim());
+        let Some(number) = number.filter(|number| number.is_finite()) else {
+            return Err(format!(
                 "{text:?} is not a number with a unit, such as 2 {}",
                 self.unit()
-            )),
-        }
+            ));
+        };
+        self.factor(unit).map(|factor| number * factor).map_err(|why| {
+            if unit.is_empty() {
+                format!("{text:?} has no unit: write it as \"2 {}\"", self.unit())
+            } else {
+                why
+            }
+        })
+    }
+
+    /// Whether a unit is one of this quantity.
+    pub(super) fn has_unit(self, unit: &str) -> bool {
+        self.factor(unit).is_ok()
     }
 
     /// The size of a unit in SI units, as instruments write it.
-    pub(super) fn factor(self, unit: &str) -> Option<f64> {
+    ///
+    /// # Errors
+    /// A sentence about a unit that does not belong to this quantity.
+    pub(super) fn factor(self, unit: &str) -> Result<f64, String> {
         let one = format!("1 {unit}");
         let read = match self {
-            Self::Time => one.parse::<Duration>().ok().map(|time| time.si()),
-            Self::Displacement => one.parse::<Length>().ok().map(|length| length.si()),
-            Self::Force => one.parse::<Force>().ok().map(|force| force.si()),
-            Self::Coefficient => None,
+            Self::Time => one.parse::<Duration>().map(|time| time.si()),
+            Self::Displacement => one.parse::<Length>().map(|length| length.si()),
+            Self::Force => one.parse::<Force>().map(|force| force.si()),
+            Self::Coefficient => {
+                let no_unit = || format!("a coefficient has the unit 1 or %, and not {unit:?}");
+                return self.size_of_word(unit).ok_or_else(no_unit);
+            }
         };
-        let words = || {
-            let of = UNIT_WORDS
-                .iter()
-                .find(|(measure, word, _)| *measure == self && *word == unit);
-            of.map(|(_, _, size)| *size)
-        };
-        read.or_else(words)
+        read.or_else(|why| self.size_of_word(unit).ok_or_else(|| why.to_string()))
     }
 
-    /// A sentence about a unit that does not belong to this quantity.
-    pub(super) fn no_such_unit(self, unit: &str) -> String {
-        let one = format!("1 {unit}");
-        let why = match self {
-            Self::Time => one.parse::<Duration>().err().map(|why| why.to_string()),
-            Self::Displacement => one.parse::<Length>().err().map(|why| why.to_string()),
-            Self::Force => one.parse::<Force>().err().map(|why| why.to_string()),
-            Self::Coefficient => None,
-        };
-        why.unwrap_or_else(|| format!("a coefficient has the unit 1 or %, and not {unit:?}"))
+    /// The size in SI units of a unit in words.
+    fn size_of_word(self, unit: &str) -> Option<f64> {
+        let mut words = UNIT_WORDS.iter();
+        let found = words.find(|(measure, word, _)| *measure == self && *word == unit);
+        found.map(|(_, _, size)| *size)
     }
 }

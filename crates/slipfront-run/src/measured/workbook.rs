@@ -11,11 +11,14 @@ mod office_open;
 mod open_document;
 mod sheet;
 
-use slipfront_base::text::truncated;
+use std::path::Path;
+
+use slipfront_base::text::{display_path, truncated};
 
 pub(super) use self::archive::MOST_BYTES;
 use self::archive::{Budget, Parts};
 use self::sheet::Sheet;
+use super::error::MeasuredError;
 
 /// Whether a file that begins with `head` may be a workbook: a zip archive.
 pub(super) fn is_workbook(head: &[u8]) -> bool {
@@ -25,19 +28,23 @@ pub(super) fn is_workbook(head: &[u8]) -> bool {
 /// The sheet of a workbook that has numbers in two columns.
 ///
 /// # Errors
-/// A sentence that continues after the name of the file, if it is not a workbook, no sheet has such numbers,
-/// or several have.
-pub(super) fn sheet(bytes: &[u8]) -> Result<Sheet, String> {
-    let unreadable = |why: String| {
-        format!("is a workbook that cannot be read: {why}; save its sheet as .csv, and give that file")
+/// If the file is not a workbook, no sheet has such numbers, or several have.
+pub(super) fn sheet(bytes: &[u8], path: &Path) -> Result<Sheet, MeasuredError> {
+    let refuse = |why: String| MeasuredError::refuse(format!("{} {why}", display_path(path)));
+    let mut found = match sheets(bytes) {
+        Ok(sheets) => sheets,
+        Err(why) => {
+            return refuse(format!(
+                "is a workbook that cannot be read: {why}; save its sheet as .csv, and give that file"
+            ));
+        }
     };
-    let mut found = sheets(bytes).map_err(unreadable)?;
     found.retain(|sheet| sheet.n_rows > 1);
     let names = || Vec::from_iter(found.iter().map(|sheet| format!("{:?}", sheet.name))).join(", ");
     match found.len() {
-        0 => Err("is a workbook without a sheet with two columns of numbers".to_owned()),
+        0 => refuse("is a workbook without a sheet with two columns of numbers".to_owned()),
         1 => Ok(found.remove(0)),
-        _ => Err(format!(
+        _ => refuse(format!(
             "has numbers in several sheets, {}: save the right sheet as .csv, and give that file",
             truncated(&names())
         )),
@@ -45,7 +52,7 @@ pub(super) fn sheet(bytes: &[u8]) -> Result<Sheet, String> {
 }
 
 fn sheets(bytes: &[u8]) -> Result<Vec<Sheet>, String> {
-    let (mut parts, mut budget) = (Parts::of(bytes)?, Budget::new());
+    let (mut parts, mut budget) = (Parts::open(bytes)?, Budget::new());
     match parts.has("content.xml") {
         true => open_document::sheets(&mut parts, &mut budget),
         false => office_open::sheets(&mut parts, &mut budget),
@@ -61,6 +68,10 @@ mod tests {
     use slipfront_case::table::TableOptions;
 
     use super::*;
+
+    fn sheet(bytes: &[u8]) -> Result<Sheet, String> {
+        super::sheet(bytes, Path::new("book")).map_err(|error| error.to_string())
+    }
     use crate::measured::{Column, Measure, MeasuredRecord};
 
     #[test]

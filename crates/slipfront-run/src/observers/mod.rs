@@ -33,7 +33,7 @@ macro_rules! observers {
 
             /// Whether the observers, at a checkpoint, can have begun as `new`.
             pub(crate) fn fit(&self, new: &Self, now: Times) -> bool {
-                $(fits(&self.$name, &new.$name, now))&&*
+                $(both(&self.$name, &new.$name, |old, new| old.fits(new, now)))&&*
             }
 
             pub(crate) fn scheduled(&mut self) -> impl Iterator<Item = Scheduled<'_>> {
@@ -41,7 +41,7 @@ macro_rules! observers {
             }
 
             /// Writes the numbers and warnings of the observers into a summary.
-            pub(crate) fn tell(&self, summary: &mut Summary) {
+            pub(crate) fn write_into(&self, summary: &mut Summary) {
                 $(
                     summary.$name = self.$name.as_ref().map(Observed::numbers);
                     summary.warnings.extend(self.$name.as_ref().and_then(Observed::warning));
@@ -82,9 +82,10 @@ observers! {
     events: Events,
 }
 
-fn fits<O: Observed>(old: &Option<O>, new: &Option<O>, now: Times) -> bool {
+/// Whether an observer that only some runs have fits one of a run that begins, or both do not exist.
+pub(crate) fn both<O>(old: &Option<O>, new: &Option<O>, fits: impl FnOnce(&O, &O) -> bool) -> bool {
     match (old, new) {
-        (Some(old), Some(new)) => old.fits(new, now),
+        (Some(old), Some(new)) => fits(old, new),
         (old, new) => old.is_none() && new.is_none(),
     }
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use slipfront_case::case_file::CaseError;
-use slipfront_plot::PictureError;
+use slipfront_plot::{Picture, PictureError};
 use thiserror::Error;
 
 use crate::error::ResultsError;
@@ -51,6 +51,14 @@ pub enum RunPictureError {
         name: &'static str,
         source: PictureError,
     },
+}
+
+/// A picture, or the error that names it.
+pub(super) fn drawn(
+    name: &'static str,
+    picture: Result<Picture, PictureError>,
+) -> Result<Picture, RunPictureError> {
+    picture.map_err(|source| RunPictureError::Picture { name, source })
 }
 
 /// A measured record that cannot be compared with the curves of runs, or has no clear place on them.

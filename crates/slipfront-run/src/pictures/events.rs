@@ -3,7 +3,7 @@
 use slipfront_base::number_format::count;
 use slipfront_plot::{self as plot, Distribution, Picture, PictureSize};
 
-use super::error::RunPictureError;
+use super::error::{RunPictureError, drawn};
 use crate::observers::events::{EventRow, FILE, read_csv};
 use crate::run_files::RunFiles;
 
@@ -35,9 +35,5 @@ pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>
         0 => String::new(),
         _ => format!("without {} that slip backwards", count(backwards, "event")),
     };
-    let drawn = plot::distributions(&distributions, &note, size);
-    drawn.map(Some).map_err(|source| RunPictureError::Picture {
-        name: "events",
-        source,
-    })
+    drawn("events", plot::distributions(&distributions, &note, size)).map(Some)
 }

@@ -7,7 +7,7 @@ use slipfront_base::number_format::{in_print, si_prefix, with_si_prefix};
 use slipfront_case::case_file::Motion;
 use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, KineticLine, Picture, PictureSize};
 
-use super::error::{RecordError, RunPictureError};
+use super::error::{RecordError, RunPictureError, drawn};
 pub use super::record_fit::Misfit;
 use super::record_fit::{Points, ends, fitting_shifts, misfit, rival};
 use crate::instrument::Instrument;
@@ -91,10 +91,7 @@ impl FrictionLook {
         for (curve, name) in curves.iter_mut().zip(&self.names) {
             name.clone_into(&mut curve.label);
         }
-        plot::friction(&curves, &axes, self.size).map_err(|source| RunPictureError::Picture {
-            name: "friction",
-            source,
-        })
+        drawn("friction", plot::friction(&curves, &axes, self.size))
     }
 }
 
@@ -187,10 +184,10 @@ pub fn overlay_measured(
     let mut runs = DrawnRun::read_all(folders)?;
     if let Some(instrument) = &measured.instrument {
         for run in &mut runs {
-            run.pass(instrument, measured.record.of)?;
+            run.pass(instrument, measured.record.quantity)?;
         }
     }
-    let scale = in_si(&runs, against, measured.record.of)?;
+    let scale = in_si(&runs, against, measured.record.quantity)?;
     let mut curves = scale.curves(&runs);
     let [along, up] = scale.prefixes;
     let MeasuredRecord { x, y, .. } = &measured.record;
@@ -223,19 +220,20 @@ pub fn overlay_measured(
             })
             .into());
         }
-        None => own_shift(record, &curves).map_err(|rival| {
-            Box::new(match rival {
-                Rival::Other { run, own, of_run } => RecordError::ShiftsOfRuns {
-                    record: measured.label.clone(),
-                    first: folders[0].clone(),
-                    own: in_units(own),
-                    other: folders[run].clone(),
-                    of_other: in_units(of_run),
+        None => own_shift(record, &curves).map_err(|Rival { run, own, other }| {
+            let (record, [own, other]) = (measured.label.clone(), [own, other].map(in_units));
+            Box::new(match run {
+                0 => RecordError::UnclearShift {
+                    record,
+                    one: own,
+                    other,
                 },
-                Rival::Same { own, rival } => RecordError::UnclearShift {
-                    record: measured.label.clone(),
-                    one: in_units(own),
-                    other: in_units(rival),
+                _ => RecordError::ShiftsOfRuns {
+                    record,
+                    first: folders[0].clone(),
+                    own,
+                    other: folders[run].clone(),
+                    of_other: other,
                 },
             })
         })?,
@@ -264,7 +262,7 @@ pub fn overlay_measured(
         .into());
     }
     let fit = Fit {
-        measures: [measured.record.along, measured.record.of],
+        measures: [measured.record.along, measured.record.quantity],
         shift: along * shift,
         points: x.len(),
         misfits,
@@ -285,11 +283,11 @@ pub fn overlay_measured(
 }
 
 /// Another shift of a record that may be right, as well as the best one on the first run.
-enum Rival {
-    /// The shift that fits another run best.
-    Other { run: usize, own: f64, of_run: f64 },
-    /// Another shift that fits the first run.
-    Same { own: f64, rival: f64 },
+struct Rival {
+    /// The run that the other shift fits, which may be the first one.
+    run: usize,
+    own: f64,
+    other: f64,
 }
 
 /// The shift with which a record fits the first curve best, if no other shift fits this or another curve
@@ -300,25 +298,21 @@ fn own_shift(record: Points, curves: &[FrictionCurve]) -> Result<f64, Rival> {
         to - from
     };
     let shorter = length(record.0).min(length(&curves[0].x));
-    let of = |curve: &FrictionCurve| fitting_shifts(record, (&curve.x, &curve.friction));
-    let found = of(&curves[0]);
-    let best = found[0];
-    for (run, curve) in curves.iter().enumerate().skip(1) {
-        if let Some(other) = rival(best, &of(curve)[..1], shorter) {
-            return Err(Rival::Other {
+    let fitting = |curve: &FrictionCurve| fitting_shifts(record, (&curve.x, &curve.friction));
+    let on_first = fitting(&curves[0]);
+    let best = on_first[0];
+    let others = curves.iter().enumerate().skip(1);
+    let others = others.map(|(run, curve)| (run, fitting(curve)[..1].to_vec()));
+    for (run, shifts) in others.chain([(0, on_first[1..].to_vec())]) {
+        if let Some(other) = rival(best, &shifts, shorter) {
+            return Err(Rival {
                 run,
                 own: best.shift,
-                of_run: other.shift,
+                other: other.shift,
             });
         }
     }
-    match rival(best, &found[1..], shorter) {
-        Some(rival) => Err(Rival::Same {
-            own: best.shift,
-            rival: rival.shift,
-        }),
-        None => Ok(best.shift),
-    }
+    Ok(best.shift)
 }
 
 /// Draws the friction curve of a run against t*.
@@ -398,12 +392,12 @@ impl DrawnRun {
     }
 
     /// Replaces friction by the output of an instrument.
-    fn pass(&mut self, instrument: &Instrument, of: Measure) -> Result<(), RunPictureError> {
+    fn pass(&mut self, instrument: &Instrument, quantity: Measure) -> Result<(), RunPictureError> {
         // The times of a held drive count only while it moves.
         if self.summary.drive_steps.is_some() && instrument.has_memory() {
             return Err(Box::new(RecordError::HeldDrive(self.folder.clone())).into());
         }
-        let (time_unit, unit) = (self.si()?.time_unit_s, self.friction_unit(of)?);
+        let (time_unit, unit) = (self.si()?.time_unit_s, self.friction_unit(quantity)?);
         let time: Vec<f64> = self.rows.iter().map(|row| time_unit * row[0]).collect();
         let friction: Vec<f64> = self.rows.iter().map(|row| unit * row[2]).collect();
         let written = instrument.record(&time, &friction);
@@ -415,10 +409,10 @@ impl DrawnRun {
     }
 
     /// Friction at mu* = 1: N, or N m for a rotation; 1 for a coefficient.
-    fn friction_unit(&self, of: Measure) -> Result<f64, RunPictureError> {
+    fn friction_unit(&self, quantity: Measure) -> Result<f64, RunPictureError> {
         let si = self.si()?;
         Ok(match si.static_torque_n_m {
-            _ if of == Measure::Coefficient => si.stress_unit_pa / si.pressure_pa,
+            _ if quantity == Measure::Coefficient => si.stress_unit_pa / si.pressure_pa,
             Some(torque) => torque / self.summary.static_friction_star,
             None => si.stress_unit_pa * si.area_m2,
         })

@@ -6,7 +6,8 @@ use std::ops::Range;
 use slipfront_case::case_file::Motion;
 use slipfront_plot::{self as plot, CellMeans, FrontMap, Picture, PictureSize, SpaceTime};
 
-use super::error::RunPictureError;
+use super::error::{RunPictureError, drawn};
+use super::maps::drawn_lattice;
 use crate::fields::{self, KymographData};
 use crate::names::{FIELDS, KYMOGRAPH, SUMMARY};
 use crate::run_files::RunFiles;
@@ -26,10 +27,7 @@ pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>
     let mut fields = fields::read_first_slips::<CellMeans>(&run.file(FIELDS)?)?;
     let first_slips = fields.frames.pop().and_then(|mut frame| frame.values.pop());
     let map = FrontMap {
-        nx: fields.columns(),
-        ny: fields.rows(),
-        block_size: fields.block_size * fields.stride as f64,
-        textured: fields.textured,
+        lattice: drawn_lattice(&fields),
         first_slips: first_slips.unwrap_or_default(),
         nucleations: summary
             .nucleations
@@ -44,11 +42,7 @@ pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>
         .fold(f64::INFINITY, |least, slip| least.min(slip.into()));
     let rows = rows_of_the_front(&kymograph.time_star, earliest, &summary);
     let space_time = space_time(&kymograph, rows, &summary);
-    let drawn = plot::front(&map, &space_time, size).map(Some);
-    drawn.map_err(|source| RunPictureError::Picture {
-        name: "front",
-        source,
-    })
+    drawn("front", plot::front(&map, &space_time, size)).map(Some)
 }
 
 /// Draws the kymograph of a run from its first instant to its last.
@@ -59,11 +53,8 @@ pub fn draw_kymograph(run: RunFiles, size: PictureSize) -> Result<Picture, RunPi
     let summary = summary_of(&run.file(SUMMARY)?)?;
     let kymograph = fields::read_kymograph(run.file(KYMOGRAPH)?)?;
     let rows = 0..kymograph.time_star.len();
-    let drawn = plot::kymograph(&space_time(&kymograph, rows, &summary), size);
-    drawn.map_err(|source| RunPictureError::Picture {
-        name: "the kymograph",
-        source,
-    })
+    let space_time = space_time(&kymograph, rows, &summary);
+    drawn("the kymograph", plot::kymograph(&space_time, size))
 }
 
 /// Rows of a kymograph as they are drawn.

@@ -7,19 +7,21 @@ use slipfront_base::number_format::{in_print, si_prefix};
 use slipfront_case::case::{MAX_MAPS, mapped_field, scales};
 use slipfront_case::case_file::{CaseFile, Motion};
 use slipfront_case::field_info::field_info;
-use slipfront_plot::{self as plot, CellMeans, Picture, PictureSize, SLIDING_SHARE, StressMap, StressMaps};
+use slipfront_plot::{
+    self as plot, CellMeans, DrawnLattice, Picture, PictureSize, SLIDING_SHARE, SnapshotMap, SnapshotMaps,
+};
 
-use super::error::RunPictureError;
+use super::error::{RunPictureError, drawn};
 use super::files::case_of;
-use crate::fields::{self, FieldFrame, Reduction};
+use crate::fields::{self, FieldFrame, FieldsData, Reduction};
 use crate::names::{FIELDS, SERIES, SUMMARY};
 use crate::run_files::RunFiles;
 use crate::series::{self, SeriesRow};
-use crate::summary::{InstantSummary, Summary, summary_of};
+use crate::summary::{Summary, summary_of};
 
 /// Maps are read as the means that are drawn, so that the memory does not grow with the lattice.
 impl Reduction for CellMeans {
-    fn of(columns: usize, rows: usize) -> Self {
+    fn begin(columns: usize, rows: usize) -> Self {
         Self::new(columns, rows)
     }
 
@@ -29,33 +31,6 @@ impl Reduction for CellMeans {
 
     fn finish(self) -> Vec<f32> {
         self.finish()
-    }
-}
-
-/// Values mu* of snapshots: from the summary for an instant A-F, else from a row of the series, which a
-/// thinned series may lack.
-pub(super) struct MuStar<'a> {
-    instants: &'a [InstantSummary],
-    /// Values mu* of the rows by steps.
-    rows: HashMap<u64, f64>,
-}
-
-impl<'a> MuStar<'a> {
-    pub(super) fn of(instants: &'a [InstantSummary], rows: impl Iterator<Item = (u64, f64)>) -> Self {
-        Self {
-            instants,
-            rows: rows.collect(),
-        }
-    }
-
-    /// Value mu* of a snapshot; NaN if it is not known.
-    pub(super) fn at(&self, frame: &FieldFrame) -> f64 {
-        let mut instants = self.instants.iter();
-        let instant = instants.find(|instant| instant.time_star == frame.time_star);
-        let found = instant.map(|instant| instant.mu_star);
-        found
-            .or_else(|| self.rows.get(&frame.step).copied())
-            .unwrap_or(f64::NAN)
     }
 }
 
@@ -88,25 +63,25 @@ pub fn title_of_field(
     case: Option<&CaseFile>,
     values: impl Iterator<Item = f32>,
 ) -> (String, f32) {
-    let MapScale { title, unit, .. } = MapScale::of(field, case, values);
+    let MapScale { title, unit, .. } = MapScale::new(field, case, values);
     (title, unit)
 }
 
 /// The scale of the maps of a field.
-pub(super) struct MapScale {
+struct MapScale {
     /// Title of the colour bar.
     title: String,
     /// The symbol and the unit of the field, where there is no room for the title.
-    pub(super) symbol: String,
+    symbol: String,
     /// The unit in which the values of the field are drawn.
-    pub(super) unit: f32,
+    unit: f32,
     /// Values at the ends of the bar.
-    pub(super) range: [f64; 2],
+    range: [f64; 2],
 }
 
 impl MapScale {
     /// The scale of maps of a field with these values, in the unit of its file.
-    pub(super) fn of(field: Field, case: Option<&CaseFile>, values: impl Iterator<Item = f32>) -> Self {
+    fn new(field: Field, case: Option<&CaseFile>, values: impl Iterator<Item = f32>) -> Self {
         let symbol = match (field, case) {
             (Field::ContactStress, _) => "\u{3c4}_c*",
             (Field::Traction, Some(_)) => "\u{3c4}_f*",
@@ -154,12 +129,6 @@ impl MapScale {
             range: [0.0, 1.0],
         }
     }
-
-    /// The values of a snapshot of one field in the unit in which they are drawn.
-    pub(super) fn values_of(&self, frame: FieldFrame) -> Vec<f32> {
-        let values = frame.values.into_iter().next().unwrap_or_default();
-        values.into_iter().map(|value| value / self.unit).collect()
-    }
 }
 
 /// The smallest and the largest of some values and of 0.
@@ -170,6 +139,85 @@ fn extent(values: impl Iterator<Item = f32>) -> [f64; 2] {
     })
 }
 
+/// Snapshots of a field of a run, and what else its files say of them.
+pub(super) struct Snapshots {
+    /// Maps of the field in the unit in which they are drawn.
+    pub(super) maps: SnapshotMaps,
+    /// The symbol and the unit of the field, where there is no room for its title.
+    pub(super) symbol: String,
+    pub(super) summary: Summary,
+    /// Step, time t* and mu* of the rows of the series.
+    pub(super) rows: Vec<(u64, f64, f64)>,
+}
+
+impl Snapshots {
+    /// The snapshots of a field with the numbers that `choose` returns for the letters of all; none if the
+    /// run has not kept the field.
+    pub(super) fn read(
+        run: RunFiles,
+        case: Option<&CaseFile>,
+        field: Field,
+        choose: impl Fn(&[String]) -> Vec<usize>,
+    ) -> Result<Option<Self>, RunPictureError> {
+        let fields = fields::read_maps::<CellMeans>(run.file(FIELDS)?, field, choose)?;
+        if fields.names.is_empty() || fields.frames.is_empty() {
+            return Ok(None);
+        }
+        let values = fields.frames.iter().flat_map(|frame| &frame.values).flatten();
+        let scale = MapScale::new(field, case, values.copied());
+        let summary = summary_of(&run.file(SUMMARY)?)?;
+        let row = |row: SeriesRow| (row.step, row.time_star, row.mu_star);
+        let rows = series::read_rows(&run.file(SERIES)?, SERIES, row)?;
+        let at_steps: HashMap<u64, f64> = rows.iter().map(|(step, _, mu_star)| (*step, *mu_star)).collect();
+        // A thinned series may lack the row of a snapshot.
+        let mu_star = |frame: &FieldFrame| {
+            let mut instants = summary.instants.iter();
+            let instant = instants.find(|instant| instant.time_star == frame.time_star);
+            let found = instant.map(|instant| instant.mu_star);
+            found.or_else(|| at_steps.get(&frame.step).copied())
+        };
+        let lattice = drawn_lattice(&fields);
+        let map = |frame: FieldFrame| SnapshotMap {
+            mu_star: mu_star(&frame).unwrap_or(f64::NAN),
+            // The file has the letters joined.
+            label: frame
+                .label
+                .chars()
+                .map(String::from)
+                .collect::<Vec<_>>()
+                .join(", "),
+            time_star: frame.time_star,
+            values: frame
+                .values
+                .into_iter()
+                .flatten()
+                .map(|value| value / scale.unit)
+                .collect(),
+        };
+        Ok(Some(Self {
+            maps: SnapshotMaps {
+                maps: fields.frames.into_iter().map(map).collect(),
+                lattice,
+                value_title: scale.title,
+                range: scale.range,
+            },
+            symbol: scale.symbol,
+            summary,
+            rows,
+        }))
+    }
+}
+
+/// The lattice of fields that were read as means over cells.
+pub(super) fn drawn_lattice(fields: &FieldsData) -> DrawnLattice {
+    DrawnLattice {
+        nx: fields.columns(),
+        ny: fields.rows(),
+        block_size: fields.block_size * fields.stride as f64,
+        textured: fields.textured.clone(),
+    }
+}
+
 /// Draws the maps of a field of a run; none if it has not kept the field.
 fn draw_maps(
     run: RunFiles,
@@ -177,48 +225,12 @@ fn draw_maps(
     field: Field,
     size: PictureSize,
 ) -> Result<Option<Picture>, RunPictureError> {
-    let fields = fields::read_maps::<CellMeans>(run.file(FIELDS)?, field, |labels| {
-        fields::few_of(labels, MAX_MAPS)
-    })?;
-    if fields.names.is_empty() || fields.frames.is_empty() {
+    let few = |labels: &[String]| fields::choose_snapshots(labels, MAX_MAPS);
+    let Some(Snapshots { maps, summary, .. }) = Snapshots::read(run, case, field, few)? else {
         return Ok(None);
-    }
-    let values = fields.frames.iter().flat_map(|frame| &frame.values).flatten();
-    let scale = MapScale::of(field, case, values.copied());
-    let point = |row: SeriesRow| (row.step, row.mu_star);
-    let rows = series::read_rows(&run.file(SERIES)?, SERIES, point)?;
-    let Summary { instants, motion, .. } = summary_of(&run.file(SUMMARY)?)?;
-    let mu_star = MuStar::of(&instants, rows.into_iter());
-    let (nx, ny) = (fields.columns(), fields.rows());
-    let frames = fields.frames.into_iter();
-    let maps: Vec<_> = frames
-        .map(|frame| StressMap {
-            mu_star: mu_star.at(&frame),
-            label: separated(&frame.label),
-            time_star: frame.time_star,
-            values: scale.values_of(frame),
-        })
-        .collect();
-    let maps = StressMaps {
-        nx,
-        ny,
-        block_size: fields.block_size * fields.stride as f64,
-        textured: fields.textured,
-        maps,
-        value_title: scale.title,
-        range: scale.range,
-        is_torque: motion == Some(Motion::Rotation),
     };
-    let drawn = plot::stress(&maps, size).map(Some);
-    drawn.map_err(|source| RunPictureError::Picture {
-        name: field_info(field).name,
-        source,
-    })
-}
-
-/// The letters of the instants of a map, separated by commas; the file has them joined.
-pub(super) fn separated(letters: &str) -> String {
-    letters.chars().map(String::from).collect::<Vec<_>>().join(", ")
+    let is_torque = summary.motion == Some(Motion::Rotation);
+    drawn(field_info(field).name, plot::stress(&maps, is_torque, size)).map(Some)
 }
 
 #[cfg(test)]
@@ -228,17 +240,17 @@ mod tests {
     #[test]
     fn scales_have_the_unit_that_suits() {
         let values = [-2e-9_f32, f32::NAN, 5e-9];
-        let scale = MapScale::of(Field::DisplacementX, None, values.into_iter());
+        let scale = MapScale::new(Field::DisplacementX, None, values.into_iter());
         assert_eq!((scale.symbol.as_str(), scale.unit), ("u_x (nm)", 1e-9));
         // Rounding of 32-bit numbers.
         assert!((scale.range[0] + 2.0).abs() < 1e-6 && (scale.range[1] - 5.0).abs() < 1e-6);
         for field in [Field::VelocityY, Field::Sliding] {
-            let scale = MapScale::of(field, None, [0.0; 3].into_iter());
+            let scale = MapScale::new(field, None, [0.0; 3].into_iter());
             assert_eq!(scale.range, [0.0, 1.0]);
         }
         // With a case, in units of P mu_s.
         let case = CaseFile::parse("load.pressure = '2 MPa'\nfriction.mu_static = 0.5", "case", &[]).unwrap();
-        let scale = MapScale::of(Field::Traction, Some(&case), [5e5].into_iter());
+        let scale = MapScale::new(Field::Traction, Some(&case), [5e5].into_iter());
         assert_eq!(
             (scale.symbol.as_str(), scale.unit, scale.range),
             ("\u{3c4}_f*", 1e6, [0.0, 0.5])

@@ -6,19 +6,16 @@ use slipfront::observe::Field;
 use slipfront::parallel::*;
 use slipfront_case::case::{MAX_PICTURES, memory_of_movie};
 use slipfront_case::case_file::Motion;
-use slipfront_plot::{
-    CellMeans, FrictionAxes, Movie, MovieFrame, MovieGif, MoviePictures, MovieSize, PictureError,
-};
+use slipfront_plot::{Movie, MovieGif, MoviePictures, MovieSize, PictureError, SnapshotMap};
 
 use super::error::RunPictureError;
 use super::files::{case_of, found};
-use super::friction::marked_curve;
-use super::maps::{MapScale, MuStar, field_of_maps, separated};
+use super::friction::{dimensionless_axes, marked_curve};
+use super::maps::{Snapshots, field_of_maps};
 use crate::fields;
-use crate::names::{FIELDS, SERIES, SUMMARY};
+use crate::names::{FIELDS, SERIES};
 use crate::run_files::RunFiles;
 use crate::series::{self, SeriesRow};
-use crate::summary::summary_of;
 
 /// Duration of a movie in hundredths of a second, as far as the limits on the duration of its pictures allow.
 const DURATION: usize = 1600;
@@ -60,48 +57,26 @@ pub fn memory(folder: &Path) -> Result<f64, RunPictureError> {
 pub fn of_run(run: RunFiles, field: Option<Field>) -> Result<Option<Movie>, RunPictureError> {
     let case = case_of(run)?;
     let field = field.unwrap_or_else(|| field_of_maps(case.as_ref()));
-    let fields = fields::read_maps::<CellMeans>(run.file(FIELDS)?, field, |labels| {
-        (0..labels.len().min(MAX_PICTURES + 1)).collect()
-    })?;
-    if fields.names.is_empty() || fields.frames.is_empty() {
+    let all = |labels: &[String]| (0..labels.len().min(MAX_PICTURES + 1)).collect();
+    let Some(mut snapshots) = Snapshots::read(run, case.as_ref(), field, all)? else {
         return Ok(None);
-    }
-    if fields.frames.len() > MAX_PICTURES {
+    };
+    if snapshots.maps.maps.len() > MAX_PICTURES {
         return Err(RunPictureError::TooManySnapshots(MAX_PICTURES));
     }
-    let summary = summary_of(&run.file(SUMMARY)?)?;
-    let point = |row: SeriesRow| (row.step, row.time_star, row.mu_star);
-    let rows = series::read_rows(&run.file(SERIES)?, SERIES, point)?;
-    let mut curve = marked_curve(String::new(), &summary);
-    curve.x = rows.iter().map(|(_, time_star, _)| *time_star).collect();
-    curve.friction = rows.iter().map(|(.., mu_star)| *mu_star).collect();
-    let mut axes = FrictionAxes::default();
-    if summary.motion == Some(Motion::Rotation) {
-        axes.friction = "torque \u{3bc}*".to_owned();
-    }
-    let steps = rows.iter().map(|(step, _, mu_star)| (*step, *mu_star));
-    let mu_star = MuStar::of(&summary.instants, steps);
-    let values = fields.frames.iter().flat_map(|frame| &frame.values).flatten();
-    let scale = MapScale::of(field, case.as_ref(), values.copied());
-    let (nx, ny) = (fields.columns(), fields.rows());
-    let frames = fields.frames.into_iter();
-    let frames: Vec<_> = frames
-        .map(|frame| MovieFrame {
-            mu_star: mu_star.at(&frame),
-            label: separated(&frame.label),
-            time_star: frame.time_star,
-            values: scale.values_of(frame),
-        })
+    // There is no room for the title.
+    snapshots.maps.value_title = snapshots.symbol;
+    let mut curve = marked_curve(String::new(), &snapshots.summary);
+    curve.x = snapshots
+        .rows
+        .iter()
+        .map(|(_, time_star, _)| *time_star)
         .collect();
+    curve.friction = snapshots.rows.iter().map(|(.., mu_star)| *mu_star).collect();
     Ok(Some(Movie {
-        nx,
-        ny,
-        textured: fields.textured,
-        title: scale.symbol,
-        range: scale.range,
+        snapshots: snapshots.maps,
         curve,
-        axes,
-        frames,
+        axes: dimensionless_axes(snapshots.summary.motion == Some(Motion::Rotation)),
     }))
 }
 
@@ -124,7 +99,7 @@ pub fn spacing(run: RunFiles, snapshots: usize) -> Result<f64, RunPictureError> 
 /// # Errors
 /// When pictures would be shown for too short a time.
 pub fn delays(movie: &Movie, pace: MoviePace) -> Result<Vec<u16>, RunPictureError> {
-    let weight = |frame: &MovieFrame| {
+    let weight = |frame: &SnapshotMap| {
         if frame.label.is_empty() {
             1.0
         } else {
@@ -134,14 +109,14 @@ pub fn delays(movie: &Movie, pace: MoviePace) -> Result<Vec<u16>, RunPictureErro
     let (unit, weights): (f64, Vec<f64>) = match pace {
         MoviePace::Usual => return Ok(usual_delays(movie)),
         MoviePace::Seconds(seconds) => {
-            let weights: Vec<f64> = movie.frames.iter().map(weight).collect();
+            let weights: Vec<f64> = movie.snapshots.maps.iter().map(weight).collect();
             (100.0 * seconds / weights.iter().sum::<f64>(), weights)
         }
-        MoviePace::PerSecond(rate) => (100.0 / rate, vec![1.0; movie.frames.len()]),
+        MoviePace::PerSecond(rate) => (100.0 / rate, vec![1.0; movie.snapshots.maps.len()]),
     };
     if unit < SHORTEST_SHOWN {
         return Err(RunPictureError::TooFast {
-            pictures: movie.frames.len(),
+            pictures: movie.snapshots.maps.len(),
             seconds: SHORTEST_SHOWN * weights.iter().sum::<f64>() / 100.0,
         });
     }
@@ -156,8 +131,8 @@ pub fn delays(movie: &Movie, pace: MoviePace) -> Result<Vec<u16>, RunPictureErro
 }
 
 fn usual_delays(movie: &Movie) -> Vec<u16> {
-    let delay = (DURATION / movie.frames.len().max(1)).clamp(SHORTEST, LONGEST);
-    let frames = movie.frames.iter();
+    let delay = (DURATION / movie.snapshots.maps.len().max(1)).clamp(SHORTEST, LONGEST);
+    let frames = movie.snapshots.maps.iter();
     frames
         .map(|frame| match frame.label.as_str() {
             "" => delay as u16,
@@ -171,7 +146,7 @@ fn usual_delays(movie: &Movie) -> Vec<u16> {
 /// # Errors
 /// When the pictures cannot be drawn.
 pub fn pictures(movie: &Movie, size: MovieSize) -> Result<MoviePictures<'_>, RunPictureError> {
-    MoviePictures::of(movie, size).map_err(not_drawn)
+    MoviePictures::new(movie, size).map_err(not_drawn)
 }
 
 /// Draws the pictures of a movie one after the other, and passes each to `take`.
@@ -183,8 +158,8 @@ pub fn draw<E>(
     pictures: &MoviePictures,
     mut take: impl FnMut(Vec<u8>) -> Result<(), E>,
 ) -> Result<(), E> {
-    for first in (0..movie.frames.len()).step_by(BATCH) {
-        let batch = first..(first + BATCH).min(movie.frames.len());
+    for first in (0..movie.snapshots.maps.len()).step_by(BATCH) {
+        let batch = first..(first + BATCH).min(movie.snapshots.maps.len());
         let drawn: Vec<_> = batch.into_par_iter().map(|index| pictures.draw(index)).collect();
         drawn.into_iter().try_for_each(&mut take)?;
     }
@@ -198,7 +173,7 @@ pub fn draw<E>(
 pub fn gif(movie: &Movie, size: MovieSize, delays: &[u16]) -> Result<Vec<u8>, RunPictureError> {
     let pictures = pictures(movie, size)?;
     let mut delays = delays.iter().copied();
-    let mut file = MovieGif::of(pictures.palette(), size).map_err(not_drawn)?;
+    let mut file = MovieGif::new(pictures.palette(), size).map_err(not_drawn)?;
     let drawn = draw(movie, &pictures, |pixels| {
         file.add(pixels, delays.next().unwrap_or_default())
     });
@@ -214,18 +189,23 @@ fn not_drawn(source: PictureError) -> RunPictureError {
 
 #[cfg(test)]
 mod tests {
+    use slipfront_plot::SnapshotMaps;
+
     use super::*;
 
     #[test]
     fn instants_are_shown_longer() {
-        let frame = |label: &str| MovieFrame {
+        let frame = |label: &str| SnapshotMap {
             label: label.to_owned(),
-            ..MovieFrame::default()
+            ..SnapshotMap::default()
         };
         let movie = |others: usize| Movie {
-            frames: std::iter::once(frame("A"))
-                .chain((0..others).map(|_| frame("")))
-                .collect(),
+            snapshots: SnapshotMaps {
+                maps: std::iter::once(frame("A"))
+                    .chain((0..others).map(|_| frame("")))
+                    .collect(),
+                ..SnapshotMaps::default()
+            },
             ..Movie::default()
         };
         let usual = |others: usize| delays(&movie(others), MoviePace::Usual).unwrap();

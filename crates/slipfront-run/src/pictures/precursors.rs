@@ -5,7 +5,7 @@ use slipfront::{Edge, Edges};
 use slipfront_case::case_file::{CaseFile, KineticFriction};
 use slipfront_plot::{self as plot, Picture, PictureSize, Response, Responses};
 
-use super::error::RunPictureError;
+use super::error::{RunPictureError, drawn};
 use super::files::case_of;
 use crate::observers::precursors::{FILE, PrecursorRow, read_csv};
 use crate::run_files::RunFiles;
@@ -40,19 +40,13 @@ pub(super) fn of_run(run: RunFiles, size: PictureSize) -> Result<Option<Picture>
         let points = lengths.map(|length| (precursor_load(length, mu_kinetic, slope), length));
         curves.push(curve("exact", points.collect(), true));
     }
-    let drawn = plot::response(
-        &Responses {
-            x_title: "tangential/normal force F\u{209c}/F\u{2099} after the event".to_owned(),
-            y_title: "relative length L\u{209a}/L".to_owned(),
-            curves,
-            ..Responses::default()
-        },
-        size,
-    );
-    drawn.map(Some).map_err(|source| RunPictureError::Picture {
-        name: "precursors",
-        source,
-    })
+    let responses = Responses {
+        x_title: "tangential/normal force F\u{209c}/F\u{2099} after the event".to_owned(),
+        y_title: "relative length L\u{209a}/L".to_owned(),
+        curves,
+        ..Responses::default()
+    };
+    drawn("precursors", plot::response(&responses, size)).map(Some)
 }
 
 /// Kinetic coefficient and slope of the pressure from the driven end, for a chain of equal thresholds that is

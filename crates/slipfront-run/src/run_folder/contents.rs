@@ -30,14 +30,14 @@ pub(super) fn managed_files(folder: &Path, listed: &[ManifestFile]) -> Result<Ve
         }
     }
     names.sort_by_key(|name| (name == CASE, name != MANIFEST));
-    names.extend(Unfinished::of(folder).managed_files()?);
+    names.extend(Unfinished::in_folder(folder).managed_files()?);
     Ok(names)
 }
 
 /// Bytes of the files of an earlier run in a folder, by their lengths alone.
 pub(super) fn managed_bytes(folder: &Path, listed: &[ManifestFile]) -> Result<u64, FolderError> {
     let names = listed_names(folder, listed)?.into_iter();
-    let names = names.chain(Unfinished::of(folder).managed_files()?);
+    let names = names.chain(Unfinished::in_folder(folder).managed_files()?);
     let length = |path: PathBuf| {
         let found = found_at(&path).map_err(FolderError::read(&path))?;
         Ok(found.map_or(0, |file| file.len()))
@@ -100,7 +100,7 @@ pub(super) fn refuse_unmanaged(
             FolderError::Foreign { path }
         });
     }
-    let unfinished = Unfinished::of(folder);
+    let unfinished = Unfinished::in_folder(folder);
     if found(unfinished.path())?.is_some() && !unfinished.is_managed()? {
         let path = unfinished.path().to_owned();
         return Err(FolderError::Foreign { path });

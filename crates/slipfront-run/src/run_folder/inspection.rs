@@ -53,7 +53,7 @@ impl Inspection {
     ///
     /// # Errors
     /// When the folder cannot be listed, or the system cannot determine what it holds.
-    pub fn of(folder: &Path) -> Result<Self, FolderError> {
+    pub fn read(folder: &Path) -> Result<Self, FolderError> {
         let is_unused = is_unused(folder)?;
         let case = read_case(folder);
         let manifest = Manifest::read(folder);
@@ -113,9 +113,9 @@ impl Inspection {
     /// Every file that slipfront has written in the folder, from the manifest and the journal of a run that
     /// is not complete.
     pub(super) fn listed(&self) -> Result<Vec<ManifestFile>, FolderError> {
-        let mut listed = Unfinished::of(&self.path).listed()?;
+        let mut listed = Unfinished::in_folder(&self.path).listed()?;
         if let Contents::Complete(Ok(manifest)) = &self.contents {
-            let itself = ManifestFile::of(&self.path, MANIFEST);
+            let itself = ManifestFile::read(&self.path, MANIFEST);
             listed.push(itself.map_err(FolderError::read(&self.path.join(MANIFEST)))?);
             listed.extend_from_slice(&manifest.files);
         }
@@ -159,7 +159,7 @@ fn is_unused(folder: &Path) -> Result<bool, FolderError> {
         }
         Err(error) => return Err(read(error)),
     };
-    let unfinished = Unfinished::of(folder);
+    let unfinished = Unfinished::in_folder(folder);
     for entry in entries {
         let is_hidden = entry.map_err(&read)?.file_name() == UNFINISHED;
         if !is_hidden || !unfinished.is_managed()? || unfinished.has_checkpoint()? {

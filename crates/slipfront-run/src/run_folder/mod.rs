@@ -64,26 +64,18 @@ impl OpenedFolder {
     /// When the folder cannot be listed.
     pub fn open_unlocked(path: &Path) -> Result<Self, FolderError> {
         Ok(Self {
-            inspection: Inspection::of(path)?,
+            inspection: Inspection::read(path)?,
             existed: is_folder_behind(path)?,
             lock: None,
         })
     }
 
     /// Prepares the folder for a run that reads these `inputs`: it is created, or is empty, or with `force`
-    /// the files of an earlier run are removed (and nothing else).
+    /// the files of an earlier run, and nothing else, [may be removed](ClaimedFolder::take).
     ///
     /// # Errors
     /// When the folder holds other files, which includes foreign files in the place of the copies, or cannot
     /// be written.
-    pub fn prepare(self, force: bool, inputs: &[Input]) -> Result<RunFolder, FolderError> {
-        self.claim(force, inputs)?.take()
-    }
-
-    /// Prepares the folder as [`prepare`](Self::prepare) does, but removes nothing yet.
-    ///
-    /// # Errors
-    /// As for `prepare`.
     pub fn claim(mut self, force: bool, inputs: &[Input]) -> Result<ClaimedFolder, FolderError> {
         let path = self.inspection.path.clone();
         let missing = path.ancestors().take_while(|folder| !folder.exists());
@@ -201,7 +193,7 @@ pub fn expect_shared(path: &Path, communicator: &dyn Communicator) -> Result<(),
     }
     let is_first = communicator.rank() == 0;
     let failure = |sentence| RankFailure { status: 2, sentence };
-    let temporary = Unfinished::of(path).temporary();
+    let temporary = Unfinished::in_folder(path).temporary();
     let marked = is_first.then(|| write_temp(&temporary, |_| Ok(()))).transpose();
     let marked = marked.map_err(|error| failure(FolderError::unwritable(path)(error).to_string()));
     let mark = agree(communicator, marked)?;
@@ -237,14 +229,15 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// Opens a folder and prepares it: see [`OpenedFolder::open`] and [`OpenedFolder::prepare`].
+    /// Opens and claims a folder, and removes the files of an earlier run: see [`OpenedFolder::open`],
+    /// [`OpenedFolder::claim`] and [`ClaimedFolder::take`].
     pub fn prepare(path: &Path, force: bool, inputs: &[Input]) -> Result<Self, FolderError> {
-        OpenedFolder::open(path)?.prepare(force, inputs)
+        OpenedFolder::open(path)?.claim(force, inputs)?.take()
     }
 
     /// Makes the hidden subfolder, with which a run begins or is resumed.
     fn begin(path: PathBuf, lock: Option<File>) -> Result<Self, FolderError> {
-        let unfinished = Unfinished::of(&path);
+        let unfinished = Unfinished::in_folder(&path);
         // A `slipfront plot` that was killed may have left half a picture.
         clear_unfinished(&path);
         Ok(Self {
@@ -320,7 +313,7 @@ impl RunFolder {
         };
         let file = write_temp(&self.temporary(), |to| std::io::copy(&mut original, to).map(drop));
         let file = file.map_err(failed)?;
-        let copied = ManifestFile::of_copy(&input.name, &file).map_err(FolderError::write(&path))?;
+        let copied = ManifestFile::read_copy(&input.name, &file).map_err(FolderError::write(&path))?;
         if copied != ManifestFile::of_input(input) {
             let path = input.original.clone();
             return Err(FolderError::InputChanged { path });
@@ -331,7 +324,8 @@ impl RunFolder {
     /// Makes a finished temporary file a file of the run: it is listed in the journal, and then gets its
     /// name, unless a foreign file is in its place.
     pub fn place(&mut self, name: &str, file: TempPath) -> Result<(), FolderError> {
-        let listed = ManifestFile::of_copy(name, &file).map_err(FolderError::write(&self.path.join(name)))?;
+        let listed =
+            ManifestFile::read_copy(name, &file).map_err(FolderError::write(&self.path.join(name)))?;
         self.place_listed(listed, file)
     }
 
@@ -364,13 +358,13 @@ impl RunFolder {
     ) -> Result<Manifest, FolderError> {
         for file in &self.written {
             let path = self.path.join(&file.name);
-            let found = ManifestFile::of(&self.path, &file.name).map_err(FolderError::read(&path))?;
+            let found = ManifestFile::read(&self.path, &file.name).map_err(FolderError::read(&path))?;
             if found != *file {
                 return Err(FolderError::Changed { path });
             }
         }
         let files = std::mem::take(&mut self.written);
-        let (manifest, bytes) = Manifest::of(files, case, started, processors).with_checksum();
+        let (manifest, bytes) = Manifest::new(files, case, started, processors).with_checksum();
         let file = write_temp(&self.temporary(), |file| file.write_all(&bytes));
         self.place_manifest(file.map_err(FolderError::write(&self.path.join(MANIFEST)))?)?;
         self.close();

@@ -20,7 +20,7 @@ pub struct Unfinished {
 
 impl Unfinished {
     /// The hidden subfolder of a run folder.
-    pub fn of(run: &Path) -> Self {
+    pub fn in_folder(run: &Path) -> Self {
         let path = run.join(UNFINISHED);
         Self { path }
     }

@@ -15,8 +15,7 @@ use slipfront::observe::Field;
 use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::fields::{
-    FieldFrame, FieldsFile, FieldsWriter, StaticFields, kymograph_bytes, read_fields, read_kymograph,
-    read_maps, read_rows,
+    FieldFrame, FieldsData, FieldsWriter, kymograph_bytes, read_fields, read_kymograph, read_maps, read_rows,
 };
 use slipfront_run::running;
 use tempfile::TempDir;
@@ -102,23 +101,21 @@ impl ExpectedFields {
                     values: vec![self.field(rows, instant, 0), self.field(rows, instant, 1)],
                 })
                 .collect();
-            let file = FieldsFile {
+            let file = FieldsData {
                 nx: self.nx,
                 ny: self.ny,
-                rows: rows.clone(),
                 stride: 1,
+                first_row: rows.start,
                 block_size: 0.25,
                 time_unit_s: 0.5,
-                names: &FIELDS,
-                statics: StaticFields {
-                    textured: &self.blocks(rows, is_textured),
-                    mu_static: &self.blocks(rows, |row, column| value(0, row, column)),
-                    mu_kinetic: &self.blocks(rows, |row, column| value(1, row, column)),
-                    first_slip_time_star: &self.blocks(rows, first_slip),
-                },
-                frames: &frames,
+                names: FIELDS.to_vec(),
+                textured: self.blocks(rows, is_textured),
+                mu_static: self.blocks(rows, |row, column| value(0, row, column)),
+                mu_kinetic: self.blocks(rows, |row, column| value(1, row, column)),
+                first_slip_time_star: self.blocks(rows, first_slip),
+                frames,
             };
-            let writer = FieldsWriter::new(path, &file).unwrap();
+            let writer = FieldsWriter::new(&file);
             if process == 0 {
                 writer.create(&mut output).unwrap();
             }

@@ -42,7 +42,7 @@ struct Pin {
 
 impl Pin {
     /// Pins of a summary; missing results are NaN, which equals no pin.
-    fn of(summary: &Summary) -> Self {
+    fn from_summary(summary: &Summary) -> Self {
         Self {
             static_friction_star: summary.static_friction_star,
             onset_time_star: summary.onset_time_star,
@@ -108,7 +108,7 @@ fn every_case_gives_its_pinned_results() {
                 Case::load(&path, &[], &mut |_| true, Ranks::ALONE).unwrap_or_else(|error| panic!("{error}")),
             );
             let record = running::run(&case, 1).unwrap();
-            (name, Pin::of(&record.summary))
+            (name, Pin::from_summary(&record.summary))
         })
         .collect();
     assert!(!found.is_empty(), "no case in {}", cases().display());

@@ -45,7 +45,7 @@ impl Session {
     pub(super) fn give_up_work(&mut self) {
         self.give_up_search();
         self.end_repetition();
-        self.end_calibration(CalibrationOutcome::GivenUp);
+        self.end_calibration(CalibrationOutcome::GivenUp, None, None);
         self.give_up_errands();
     }
 

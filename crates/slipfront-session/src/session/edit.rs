@@ -14,6 +14,7 @@ use crate::host::OpenedCase;
 use crate::names::is_plain_name;
 use crate::protocol::{Reply, Source};
 use crate::run_files::recorded_run;
+use crate::sentence::sentence;
 use crate::view::AfterChange;
 
 impl Session {
@@ -80,7 +81,7 @@ impl Session {
         self.edited = Some(PendingEdit {
             document,
             gesture,
-            of: "set",
+            request: "set",
         });
         Ok(())
     }
@@ -107,14 +108,11 @@ impl Session {
     pub(super) fn image(&mut self, text: &str, threshold: f64, gesture: u64) -> Result<(), String> {
         self.apply_painting();
         let image = base64::decode(text)?;
-        let document = self
-            .document()?
-            .with_image(&image, threshold)
-            .map_err(|error| error.to_string())?;
+        let document = self.document()?.with_image(&image, threshold).map_err(sentence)?;
         self.edited = Some(PendingEdit {
             document,
             gesture,
-            of: "image",
+            request: "image",
         });
         Ok(())
     }
@@ -153,14 +151,11 @@ impl Session {
                 self.edited = Some(PendingEdit {
                     document,
                     gesture: painting.gesture,
-                    of: "paint",
+                    request: "paint",
                 });
                 self.apply_edited_document();
             }
-            Err(sentence) => {
-                let of = "paint";
-                self.host.reply(Reply::Refused { of, sentence }.json());
-            }
+            Err(sentence) => self.refuse("paint", sentence),
         }
     }
 
@@ -169,13 +164,13 @@ impl Session {
         let Some(PendingEdit {
             document,
             gesture,
-            of,
+            request,
         }) = self.edited.take()
         else {
             return;
         };
         if let Err(sentence) = self.run_edited(document, gesture) {
-            self.host.reply(Reply::Refused { of, sentence }.json());
+            self.refuse(request, sentence);
             // The page shows its own change, which was refused.
             self.send_case("refused");
         }
@@ -188,7 +183,7 @@ impl Session {
     pub(super) fn run_edited(&mut self, mut document: Document, gesture: u64) -> Result<(), String> {
         let from_rest = self.view.after_change == AfterChange::Rest;
         let case = self.case_of(&document)?;
-        document.drop_unnamed_files().map_err(|error| error.to_string())?;
+        document.drop_unnamed_files().map_err(sentence)?;
         self.give_up_work();
         if let Some(history) = &mut self.history {
             history.change(document, gesture);

@@ -1,13 +1,21 @@
 //! Jobs that end with one reply: reading a record, computing a sensitivity, drawing a texture.
 
-use super::state::{Errand, Session};
+use super::state::Session;
 use crate::controls;
 use crate::event::EventKind;
+use crate::host::Task;
 use crate::job::{Job, JobKind};
 use crate::protocol::{DrawingFormat, RecordFile, Reply};
 
 /// Name of the request with a job that does not depend on the case.
 const READ_RECORD: &str = "read_record";
+
+/// A job that ends with one reply. Dropping it ends the job.
+pub(super) struct Errand {
+    /// Name of the request.
+    request: &'static str,
+    task: Box<dyn Task>,
+}
 
 impl Session {
     /// Begins to read a record.
@@ -33,30 +41,34 @@ impl Session {
     }
 
     /// Begins a job that replaces an earlier job for the same request.
-    fn begin_errand(&mut self, of: &'static str, job: Job) -> Result<(), String> {
-        self.errands.retain(|errand| errand.of != of);
+    fn begin_errand(&mut self, request: &'static str, job: Job) -> Result<(), String> {
+        self.errands.retain(|errand| errand.request != request);
         let task = self.host.begin(job)?;
-        self.errands.push(Errand { of, task });
+        self.errands.push(Errand { request, task });
         Ok(())
     }
 
     /// Abandons jobs for a case that is no longer the present one.
     pub(super) fn give_up_errands(&mut self) {
-        self.errands.retain(|errand| errand.of == READ_RECORD);
+        self.errands.retain(|errand| errand.request == READ_RECORD);
     }
 
     /// Sends the replies of jobs that have ended.
     pub(super) fn follow_errands(&mut self) {
         let host = &self.host;
-        self.errands.retain_mut(|Errand { of, task }| {
+        self.errands.retain_mut(|Errand { request, task }| {
             let Some(event) = task.next_event() else {
                 return true;
             };
             host.reply(match event.0 {
                 EventKind::Replied(reply) => reply,
                 _ => {
-                    let sentence = format!("`{of}` failed by a defect of its own");
-                    Reply::Refused { of, sentence }.json()
+                    let sentence = format!("`{request}` failed by a defect of its own");
+                    Reply::Refused {
+                        of: request,
+                        sentence,
+                    }
+                    .json()
                 }
             });
             false

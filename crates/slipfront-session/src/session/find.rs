@@ -4,17 +4,36 @@
 use std::time::Duration;
 
 use super::clock::is_due;
-use super::state::{Session, TextureSearch};
-use crate::event::{Comparison, EventKind, Mask, Tried};
+use super::state::Session;
+use crate::event::{EventKind, Mask, SearchUpdate};
+use crate::host::Task;
 use crate::job::{Job, JobKind};
 use crate::protocol::{FindingReply, FoundOutcome, FoundReply, Reply};
 use crate::search::{self, NOTHING_TRIED, SEARCH_TIME};
+use crate::sentence::sentence;
 
 /// Time between two progress reports of a search.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
 /// The outcome of a search: the best texture and its comparison with the painted one, or why there is none.
-type Outcome = Result<(Mask, Comparison), String>;
+type Outcome = Result<(Mask, FoundReply), String>;
+
+/// A search for a better texture, and then the comparison of its result with the painted texture.
+pub(super) struct TextureSearch {
+    /// The gesture with which the page asked for the search.
+    gesture: u64,
+    /// Time of the host when the session first checked the search.
+    began: Option<Duration>,
+    /// Time that the search has taken up to now.
+    elapsed: Duration,
+    /// Whether the page has asked to end the search.
+    is_enough: bool,
+    /// The job under way: the search, or the comparison after it.
+    pub(super) task: Box<dyn Task>,
+    progress: SearchUpdate,
+    /// The texture that is being compared; none while textures are tried.
+    compared: Option<Mask>,
+}
 
 impl Session {
     /// Begins to search for a texture that is better than the painted one.
@@ -32,7 +51,7 @@ impl Session {
             elapsed: Duration::ZERO,
             is_enough: false,
             task: self.host.begin(Job::new(document, JobKind::Search))?,
-            tried: Tried::default(),
+            progress: SearchUpdate::default(),
             compared: None,
         });
         self.send_search();
@@ -59,23 +78,22 @@ impl Session {
         let Some(search) = &mut self.search else { return };
         let began = *search.began.get_or_insert(now);
         search.elapsed = now.saturating_sub(began);
+        let gesture = search.gesture;
         let Some(outcome) = self.outcome_of_search() else {
             if is_due(&mut self.clock.search, REPORT_INTERVAL, now) && !self.host.is_full() {
                 self.send_search();
             }
             return;
         };
-        let ended = self.search.take();
-        let found = outcome.and_then(|(best, comparison)| {
-            let (gesture, textures) = ended.map_or((0, 0), |search| (search.gesture, search.tried.textures));
-            if comparison.is_better {
+        let textures = self.search.take().map_or(0, |search| search.progress.textures);
+        let found = outcome.and_then(|(best, found)| {
+            if found.outcome == FoundOutcome::Replaced {
                 self.adopt(&best, gesture)?;
             }
-            Ok(FoundReply::of(&comparison, textures))
+            Ok(FoundReply { textures, ..found })
         });
         let found = found.unwrap_or_else(|sentence| {
-            let of = "find";
-            self.host.reply(Reply::Refused { of, sentence }.json());
+            self.refuse("find", sentence);
             FoundReply::without(FoundOutcome::Failed)
         });
         self.host.reply(Reply::Found(found).json());
@@ -88,17 +106,16 @@ impl Session {
         let mut searched = None;
         while let Some(event) = search.task.next_event() {
             match event.0 {
-                EventKind::Tried(tried) => search.note(tried),
+                EventKind::Tried(progress) => search.note(progress),
                 // This is the last event of the task, which may have ended.
                 EventKind::Searched(found) => {
                     searched = Some(found);
                     break;
                 }
-                EventKind::Compared(Ok(comparison)) => {
+                EventKind::Compared(compared) => {
                     let best = search.compared.take()?;
-                    return Some(Ok((best, comparison)));
+                    return Some(compared.map(|found| (best, found)));
                 }
-                EventKind::Compared(Err(sentence)) => return Some(Err(sentence)),
                 _ => {
                     let sentence = "the search failed by a defect of its own, which the terminal tells";
                     return Some(Err(sentence.to_owned()));
@@ -109,7 +126,7 @@ impl Session {
             return None;
         }
         if searched.is_none() && (search.is_enough || search.elapsed >= SEARCH_TIME) {
-            let best = search.tried.best_texture.clone();
+            let best = search.progress.best_texture.clone();
             searched = Some(best.ok_or_else(|| NOTHING_TRIED.to_owned()));
         }
         self.compare(searched?).err().map(Err)
@@ -137,7 +154,7 @@ impl Session {
     fn adopt(&mut self, texture: &[bool], gesture: u64) -> Result<(), String> {
         let columns = self.columns();
         let document = self.document()?.with_mask(texture, columns);
-        self.run_edited(document.map_err(|error| error.to_string())?, gesture)
+        self.run_edited(document.map_err(sentence)?, gesture)
     }
 
     fn send_search(&self) {
@@ -150,22 +167,22 @@ impl Session {
 
 impl TextureSearch {
     /// Records the progress of the search.
-    fn note(&mut self, tried: Tried) {
-        self.tried.textures = tried.textures;
-        if tried.best_texture.is_some() {
-            self.tried = tried;
+    fn note(&mut self, progress: SearchUpdate) {
+        self.progress.textures = progress.textures;
+        if progress.best_texture.is_some() {
+            self.progress = progress;
         }
     }
 
     /// Progress of the search; `columns` is the number of blocks along x.
     fn progress(&self, columns: usize) -> FindingReply {
-        let texture = self.tried.best_texture.as_deref();
+        let texture = self.progress.best_texture.as_deref();
         FindingReply {
             seconds: self.elapsed.min(SEARCH_TIME).as_secs_f64(),
             of_seconds: SEARCH_TIME.as_secs_f64(),
-            textures: self.tried.textures,
+            textures: self.progress.textures,
             compares: self.compared.is_some(),
-            best_percent: self.tried.best_percent,
+            best_percent: self.progress.best_percent,
             best_texture: texture.map_or(Vec::new(), |texture| search::strips(texture, columns)),
         }
     }
@@ -180,21 +197,6 @@ impl FoundReply {
             surfaces: 0,
             best: None,
             painted: None,
-        }
-    }
-
-    /// The result of a search that has tried `textures` textures, from its comparison.
-    fn of(comparison: &Comparison, textures: usize) -> Self {
-        Self {
-            outcome: if comparison.is_better {
-                FoundOutcome::Replaced
-            } else {
-                FoundOutcome::Kept
-            },
-            textures,
-            surfaces: comparison.surfaces,
-            best: comparison.best,
-            painted: comparison.painted,
         }
     }
 }

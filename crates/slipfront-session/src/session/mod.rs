@@ -3,14 +3,13 @@
 mod advance;
 mod brush;
 mod calibrate;
-mod calibration;
 mod clock;
+mod distributed;
 mod edit;
 mod errands;
 mod find;
 mod painting;
 mod repeat;
-mod repetition;
 mod requests;
 mod start;
 mod state;

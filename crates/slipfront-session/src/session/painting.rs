@@ -5,6 +5,7 @@ use slipfront_case::case::Case;
 
 use super::brush::stroke;
 use crate::document::Document;
+use crate::sentence::sentence;
 
 /// The painted layer of a case, block by block, before it becomes part of the case.
 pub(super) struct Painting {
@@ -33,7 +34,7 @@ impl Painting {
                 model.surface.textured.clone(),
             ),
             Some(index) => {
-                let mut textures = case.textures_in_blocks().map_err(|error| error.to_string())?;
+                let mut textures = case.textures_in_blocks().map_err(sentence)?;
                 let layer = textures.remove(index);
                 let blocks_of = |textures: &[_]| mesh(&model.lattice, textures).textured;
                 (blocks_of(&[layer]), blocks_of(&textures))
@@ -94,6 +95,6 @@ impl Painting {
         } else {
             document.with_layer(self.index, &self.layer, columns)
         };
-        made.map_err(|error| error.to_string())
+        made.map_err(sentence)
     }
 }

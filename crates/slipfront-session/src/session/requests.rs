@@ -13,9 +13,9 @@ impl Session {
     pub fn handle(&mut self, message: Message) {
         let Message(request) = message;
         self.clock.disturb_slice();
-        let of = request.name();
+        let name = request.name();
         if let Err(sentence) = self.perform(request) {
-            self.host.reply(Reply::Refused { of, sentence }.json());
+            self.refuse(name, sentence);
         }
     }
 
@@ -67,7 +67,7 @@ impl Session {
             Request::ReadRecord { record } => self.read_record(record),
             Request::Calibrate(request) => self.calibrate(request),
             Request::CalibrateStop => {
-                self.end_calibration(CalibrationOutcome::Stopped);
+                self.end_calibration(CalibrationOutcome::Stopped, None, None);
                 Ok(())
             }
             Request::Sensitivity { control } => self.sensitivity(&control),

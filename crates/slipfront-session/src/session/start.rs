@@ -7,6 +7,7 @@ use slipfront_case::case::Case;
 use super::state::{Session, Twin};
 use crate::document::Document;
 use crate::live::LiveRun;
+use crate::sentence::sentence;
 
 impl Session {
     /// Runs the present case again, from rest or from its present state.
@@ -18,7 +19,7 @@ impl Session {
     /// Builds the case of a document for display, unless the page is gone.
     pub(super) fn case_of(&self, document: &Document) -> Result<Arc<Case>, String> {
         let case = document.case_to_show(&mut |_| !self.host.is_gone());
-        case.map(Arc::new).map_err(|error| error.to_string())
+        case.map(Arc::new).map_err(sentence)
     }
 
     /// Runs a case made from the present document, from rest or from the present state of the run.

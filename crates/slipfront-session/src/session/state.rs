@@ -1,18 +1,19 @@
 //! The state of a session.
 
 use std::rc::Rc;
-use std::time::Duration;
 
-use super::calibration::Calibration;
+use super::calibrate::Calibration;
 use super::clock::Clock;
+use super::errands::Errand;
+use super::find::TextureSearch;
 use super::painting::Painting;
-use super::repetition::Repetition;
+use super::repeat::Repetition;
 use crate::document::Document;
-use crate::event::{Mask, Tried};
 use crate::history::History;
-use crate::host::{Host, Task};
+use crate::host::Host;
 use crate::live::LiveRun;
 use crate::picture::Painter;
+use crate::protocol::Reply;
 use crate::recorded::RecordedRun;
 use crate::view::View;
 
@@ -26,31 +27,7 @@ pub(super) struct Twin {
 pub(super) struct PendingEdit {
     pub(super) document: Document,
     pub(super) gesture: u64,
-    pub(super) of: &'static str,
-}
-
-/// A search for a better texture, and then the comparison of its result with the painted texture.
-pub(super) struct TextureSearch {
-    /// The gesture with which the page asked for the search.
-    pub(super) gesture: u64,
-    /// Time of the host when the session first checked the search.
-    pub(super) began: Option<Duration>,
-    /// Time that the search has taken up to now.
-    pub(super) elapsed: Duration,
-    /// Whether the page has asked to end the search.
-    pub(super) is_enough: bool,
-    /// The job under way: the search, or the comparison after it.
-    pub(super) task: Box<dyn Task>,
-    pub(super) tried: Tried,
-    /// The texture that is being compared; none while textures are tried.
-    pub(super) compared: Option<Mask>,
-}
-
-/// A job that ends with one reply. Dropping it ends the job.
-pub(super) struct Errand {
-    /// Name of the request.
-    pub(super) of: &'static str,
-    pub(super) task: Box<dyn Task>,
+    pub(super) request: &'static str,
 }
 
 /// A case that is edited, its run, and their display on a page.
@@ -129,6 +106,17 @@ impl Session {
     /// Number of blocks along x.
     pub(super) fn columns(&self) -> usize {
         self.live.as_ref().map_or(1, |live| live.case().model.lattice.nx)
+    }
+
+    /// Tells the page that a request of this name was refused, with the reason.
+    pub(super) fn refuse(&self, request: &'static str, sentence: String) {
+        self.host.reply(
+            Reply::Refused {
+                of: request,
+                sentence,
+            }
+            .json(),
+        );
     }
 
     /// The case with all edits up to now.

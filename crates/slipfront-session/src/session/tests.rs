@@ -5,14 +5,14 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use crate::live::LiveRun;
-use crate::testing::Tried;
+use crate::testing::TestSession;
 
 const PLAIN: &str = "slider.blocks = [20, 20]\ndrive.v_star = 0.1\n";
 
 /// More calls of a session than any finished job needs.
 const MOST_LOOKS: usize = 10_000;
 
-impl Tried {
+impl TestSession {
     /// Begins a search, and returns the sentence if it is refused.
     fn find(&mut self) -> Option<String> {
         let replies = self.ask(json!({ "do": "find", "gesture": 1000 }));
@@ -71,107 +71,107 @@ fn count(replies: &[Value], is: &str) -> usize {
 
 #[test]
 fn nothing_is_due_before_a_case_is_open_and_while_nothing_moves() {
-    let mut tried = Tried::new();
-    assert_eq!(tried.advance(), None);
+    let mut test = TestSession::new();
+    assert_eq!(test.advance(), None);
     // A page sends its view first, when there is nothing to draw yet.
-    tried.ask(json!({ "do": "view", "field": "speed" }));
-    assert_eq!(tried.advance(), None);
-    tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
-    assert!(tried.advance().is_some());
-    tried.ask(json!({ "do": "view", "paused": true }));
-    tried.advance();
-    assert_eq!(tried.advance(), None);
-    let step = tried.step();
-    tried.ask(json!({ "do": "step", "count": 7 }));
-    assert_eq!((tried.step(), tried.advance()), (step + 7, None));
+    test.ask(json!({ "do": "view", "field": "speed" }));
+    assert_eq!(test.advance(), None);
+    test.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
+    assert!(test.advance().is_some());
+    test.ask(json!({ "do": "view", "paused": true }));
+    test.advance();
+    assert_eq!(test.advance(), None);
+    let step = test.step();
+    test.ask(json!({ "do": "step", "count": 7 }));
+    assert_eq!((test.step(), test.advance()), (step + 7, None));
     // Another call changes nothing.
-    let pictures = tried.host.pictures.take().len();
-    tried.now += Duration::from_secs(1);
+    let pictures = test.host.pictures.take().len();
+    test.now += Duration::from_secs(1);
     assert_eq!(
-        (tried.advance(), tried.host.pictures.take().len()),
+        (test.advance(), test.host.pictures.take().len()),
         (None, 0),
         "after {pictures}"
     );
     // A hidden page does not advance, and a page that reads nothing gets nothing.
-    tried.ask(json!({ "do": "view", "paused": false, "visible": false }));
-    assert_eq!(tried.advance(), None);
-    tried.host.is_full.set(true);
-    tried.ask(json!({ "do": "view", "visible": true }));
-    let due = tried.advance().unwrap();
-    assert!(due > tried.now, "it asks at once, for ever");
-    assert_eq!(tried.step(), step + 7);
+    test.ask(json!({ "do": "view", "paused": false, "visible": false }));
+    assert_eq!(test.advance(), None);
+    test.host.is_full.set(true);
+    test.ask(json!({ "do": "view", "visible": true }));
+    let due = test.advance().unwrap();
+    assert!(due > test.now, "it asks at once, for ever");
+    assert_eq!(test.step(), step + 7);
 }
 
 /// With 25 t* per second and steps of 1 ms, a second has 25 / dt* steps, and a picture comes every 1/60 s.
 #[test]
 fn steps_keep_the_pace_and_pictures_their_rate() {
-    let mut tried = Tried::new();
-    tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
-    let dt_star = tried.session.live.as_ref().unwrap().case().time_plan.dt_star;
+    let mut test = TestSession::new();
+    test.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
+    let dt_star = test.session.live.as_ref().unwrap().case().time_plan.dt_star;
     let began = Duration::from_secs(1);
-    tried.advance_until(began, Duration::from_millis(1));
-    let (before, pictures) = (tried.step(), tried.host.pictures.take().len());
+    test.advance_until(began, Duration::from_millis(1));
+    let (before, pictures) = (test.step(), test.host.pictures.take().len());
     assert!(pictures > 30, "{pictures}");
-    tried.advance_until(2 * began, Duration::from_millis(1));
-    let steps = tried.step() - before;
+    test.advance_until(2 * began, Duration::from_millis(1));
+    let steps = test.step() - before;
     // The tolerance is the steps of one picture at either end.
     let due = 25.0 / dt_star;
     assert!(
         (steps as f64 - due).abs() <= due / 30.0,
         "{steps} steps in a second, where {due} are due"
     );
-    let pictures = tried.host.pictures.take().len();
+    let pictures = test.host.pictures.take().len();
     assert!((55..=60).contains(&pictures), "{pictures}");
 }
 
 /// A run has a pace of 40 t* per second until a block in contact slips, and of 2 t* per second afterwards.
 #[test]
 fn a_run_is_loaded_at_a_pace_of_its_own() {
-    let mut tried = Tried::new();
-    tried.ask(json!({ "do": "view", "pace": 2, "loading_pace": 40 }));
-    tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
-    let now = |tried: &Tried| {
-        let live = tried.session.live.as_ref().unwrap();
+    let mut test = TestSession::new();
+    test.ask(json!({ "do": "view", "pace": 2, "loading_pace": 40 }));
+    test.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
+    let now = |test: &TestSession| {
+        let live = test.session.live.as_ref().unwrap();
         (live.has_slipped(), live.time_star())
     };
-    let after = |tried: &mut Tried, milliseconds| {
-        tried.advance_until(
-            tried.now + Duration::from_millis(milliseconds),
+    let after = |test: &mut TestSession, milliseconds| {
+        test.advance_until(
+            test.now + Duration::from_millis(milliseconds),
             Duration::from_millis(1),
         );
-        now(tried)
+        now(test)
     };
     // 10 t*, minus the steps of one picture at either end.
-    let (has_slipped, loaded) = after(&mut tried, 250);
+    let (has_slipped, loaded) = after(&mut test, 250);
     assert!(!has_slipped && loaded > 8.5, "{has_slipped} {loaded}");
-    while !after(&mut tried, 20).0 {
-        assert!(tried.now < Duration::from_secs(2), "no block slips");
+    while !after(&mut test, 20).0 {
+        assert!(test.now < Duration::from_secs(2), "no block slips");
     }
-    let (_, slipped) = now(&tried);
-    let (_, later) = after(&mut tried, 1000);
+    let (_, slipped) = now(&test);
+    let (_, later) = after(&mut test, 1000);
     assert!((later - slipped - 2.0).abs() < 0.2, "{slipped} {later}");
 }
 
 /// A page changes the case at every movement of the pointer, but the case is made only once per picture.
 #[test]
 fn changes_between_two_pictures_are_run_once() {
-    let mut tried = Tried::new();
-    tried.ask(json!({ "do": "view", "pace": 0 }));
-    tried.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
+    let mut test = TestSession::new();
+    test.ask(json!({ "do": "view", "pace": 0 }));
+    test.ask(json!({ "do": "open", "source": { "toml": PLAIN } }));
     let mut replies = Vec::new();
     for number in 0..100 {
-        tried.now += Duration::from_millis(1);
+        test.now += Duration::from_millis(1);
         let keys = json!({ "friction.r_star": 0.3 + 0.001 * f64::from(number) });
-        replies.extend(tried.ask(json!({ "do": "set", "keys": keys, "gesture": 1 })));
+        replies.extend(test.ask(json!({ "do": "set", "keys": keys, "gesture": 1 })));
     }
     let cases = count(&replies, "case");
     assert!((5..=8).contains(&cases), "{cases} cases in 100 ms");
-    tried.advance_until(tried.now + Duration::from_millis(40), Duration::from_millis(1));
-    let live = tried.session.live.as_ref().unwrap();
+    test.advance_until(test.now + Duration::from_millis(40), Duration::from_millis(1));
+    let live = test.session.live.as_ref().unwrap();
     assert_eq!(live.case().groups.r_star, 0.3 + 0.001 * 99.0);
     // All changes of one gesture are undone together.
-    tried.ask(json!({ "do": "undo" }));
-    let live = tried.session.live.as_ref().unwrap();
+    test.ask(json!({ "do": "undo" }));
+    let live = test.session.live.as_ref().unwrap();
     assert_eq!(live.case().groups.r_star, 0.5);
 }
 
@@ -179,16 +179,16 @@ fn changes_between_two_pictures_are_run_once() {
 /// has sliding blocks, blocks that have slipped and blocks that have not.
 #[test]
 fn the_stages_of_a_transition_are_told_at_once() {
-    let mut tried = Tried::new();
-    tried.ask(json!({ "do": "view", "pace": 25, "field": "front" }));
+    let mut test = TestSession::new();
+    test.ask(json!({ "do": "view", "pace": 25, "field": "front" }));
     let toml = "slider.blocks = [20, 20]\nfriction.sigma_static_star = 0.1\ndrive.v_star = 0.03\n";
-    tried.ask(json!({ "do": "open", "source": { "toml": toml } }));
+    test.ask(json!({ "do": "open", "source": { "toml": toml } }));
     let (mut stages, mut kinds) = (0, [false; 3]);
     while stages < 3 {
-        let before = tried.session.live.as_mut().unwrap().look_for_stages();
+        let before = test.session.live.as_mut().unwrap().look_for_stages();
         assert_eq!(before, stages, "a stage was not told");
-        tried.now = tried.advance().unwrap().max(tried.now + Duration::from_millis(1));
-        let replies = tried.replies();
+        test.now = test.advance().unwrap().max(test.now + Duration::from_millis(1));
+        let replies = test.replies();
         for numbers in replies.iter().filter(|reply| reply["is"] == "numbers") {
             let seen = [
                 !numbers["instants"]["B"].is_null(),
@@ -197,7 +197,7 @@ fn the_stages_of_a_transition_are_told_at_once() {
             ];
             stages = seen.into_iter().filter(|is_seen| *is_seen).count();
         }
-        for picture in tried.host.pictures.take() {
+        for picture in test.host.pictures.take() {
             let values = &picture[36..];
             kinds[0] |= values.contains(&252);
             kinds[1] |= values.contains(&253);
@@ -210,10 +210,10 @@ fn the_stages_of_a_transition_are_told_at_once() {
 /// At rest no value is above 0, and the scale ends at the unit itself, not at a small power of ten.
 #[test]
 fn the_scale_of_a_slider_at_rest_goes_to_1() {
-    let mut tried = Tried::with(PLAIN);
+    let mut test = TestSession::with(PLAIN);
     for field in ["traction", "displacement", "speed"] {
-        tried.ask(json!({ "do": "view", "field": field }));
-        let picture = tried.host.pictures.borrow_mut().pop().unwrap();
+        test.ask(json!({ "do": "view", "field": field }));
+        let picture = test.host.pictures.borrow_mut().pop().unwrap();
         assert_eq!(
             picture[24..32],
             [0.0_f32, 1.0].map(f32::to_le_bytes).concat(),
@@ -225,16 +225,16 @@ fn the_scale_of_a_slider_at_rest_goes_to_1() {
 /// The ends of the run and of its twin are each reported once, and then nothing is due.
 #[test]
 fn a_run_and_its_twin_go_to_their_ends() {
-    let mut tried = Tried::new();
-    tried.ask(json!({ "do": "view", "pace": 0 }));
+    let mut test = TestSession::new();
+    test.ask(json!({ "do": "view", "pace": 0 }));
     let toml = "slider.blocks = [6, 6]\ndrive.v_star = 0.1\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
-    tried.ask(json!({ "do": "open", "source": { "toml": toml } }));
-    tried.advance_until(Duration::from_secs(600), Duration::from_millis(2));
-    assert_eq!(tried.advance(), None);
-    tried.host.pictures.take();
-    tried.now += Duration::from_secs(1);
-    assert_eq!((tried.advance(), tried.host.pictures.take().len()), (None, 0));
-    let replies = tried.replies();
+    test.ask(json!({ "do": "open", "source": { "toml": toml } }));
+    test.advance_until(Duration::from_secs(600), Duration::from_millis(2));
+    assert_eq!(test.advance(), None);
+    test.host.pictures.take();
+    test.now += Duration::from_secs(1);
+    assert_eq!((test.advance(), test.host.pictures.take().len()), (None, 0));
+    let replies = test.replies();
     let last = replies
         .iter()
         .rev()
@@ -291,7 +291,7 @@ impl DrawnCurves {
 /// Checks a curve against the rows of its run: all rows of the present leg are there, and no row is missing
 /// at the end of a previous leg.
 fn assert_whole(curve: &[[f64; 2]], live: &LiveRun) {
-    let before = live.drive_time_before_star();
+    let before = live.before.drive_time_star;
     let rows = live.running().rows().iter();
     let rows: Vec<[f64; 2]> = rows
         .map(|row| [before + row.drive_time_star, row.point.mu_star])
@@ -349,20 +349,20 @@ fn curves_are_whole_after_any_order_of_requests() {
     };
     let (mut ends_with_twin, mut ends_with_legs) = (0, 0);
     for _ in 0..60 {
-        let mut tried = Tried::new();
+        let mut test = TestSession::new();
         let mut drawn = DrawnCurves::default();
-        drawn.take(&tried.ask(open(json!({ "toml": one }))));
+        drawn.take(&test.ask(open(json!({ "toml": one }))));
         for _ in 0..12 {
             let request = &requests[below(requests.len() as u32) as usize];
-            drawn.take(&tried.ask(request.clone()));
-            let end = tried.now + Duration::from_millis(u64::from(below(600)));
-            tried.advance_until(end, Duration::from_millis(2));
-            drawn.take(&tried.replies());
+            drawn.take(&test.ask(request.clone()));
+            let end = test.now + Duration::from_millis(u64::from(below(600)));
+            test.advance_until(end, Duration::from_millis(2));
+            drawn.take(&test.replies());
         }
-        drawn.take(&tried.ask(json!({ "do": "view", "paused": false, "pace": 0 })));
-        tried.advance_until(tried.now + Duration::from_secs(600), Duration::from_millis(2));
-        drawn.take(&tried.replies());
-        let session = &tried.session;
+        drawn.take(&test.ask(json!({ "do": "view", "paused": false, "pace": 0 })));
+        test.advance_until(test.now + Duration::from_secs(600), Duration::from_millis(2));
+        drawn.take(&test.replies());
+        let session = &test.session;
         assert_whole(&drawn.run, session.live.as_ref().unwrap());
         match &session.twin {
             Some(twin) => assert_whole(&drawn.twin, &twin.live),
@@ -384,50 +384,50 @@ fn curves_are_whole_after_any_order_of_requests() {
 
 #[test]
 fn static_friction_over_seeds_is_told_seed_by_seed_and_saving_is_left_to_the_host() {
-    let mut tried = Tried::with(PLAIN);
-    let mut replies = tried.ask(json!({ "do": "repeat", "seeds": 3 }));
-    replies.extend(tried.follow("repeated", |reply| reply["finished"] == true));
+    let mut test = TestSession::with(PLAIN);
+    let mut replies = test.ask(json!({ "do": "repeat", "seeds": 3 }));
+    replies.extend(test.follow("repeated", |reply| reply["finished"] == true));
     let done: Vec<_> = replies
         .iter()
         .filter(|reply| reply["is"] == "repeated")
         .map(|reply| reply["done"].as_u64().unwrap())
         .collect();
     assert_eq!(done, [1, 2, 3]);
-    assert!(tried.session.repeating.is_none());
+    assert!(test.session.repeating.is_none());
     for seeds in [1, 33] {
-        let said = tried.ask(json!({ "do": "repeat", "seeds": seeds }));
+        let said = test.ask(json!({ "do": "repeat", "seeds": seeds }));
         assert_eq!(count(&said, "refused"), 1, "{said:?}");
     }
-    tried.ask(json!({ "do": "save", "name": "run" }));
-    tried.ask(json!({ "do": "save_stop", "name": "run" }));
+    test.ask(json!({ "do": "save", "name": "run" }));
+    test.ask(json!({ "do": "save_stop", "name": "run" }));
     assert_eq!(
-        (tried.host.saves.take(), tried.host.stops.take()),
+        (test.host.saves.take(), test.host.stops.take()),
         (vec!["run".to_owned()], vec!["run".to_owned()])
     );
 }
 
 #[test]
 fn the_best_of_a_stopped_search_replaces_the_painted_texture_and_undo_brings_it_back() {
-    let mut tried = Tried::with(PLAIN);
+    let mut test = TestSession::with(PLAIN);
     // A single row is no texture that a search would try.
-    tried.ask(json!({
+    test.ask(json!({
         "do": "paint", "points": [[0.5, 0.5], [4.5, 0.5]], "radius": 0.3, "textured": true, "gesture": 1,
     }));
-    let painted = tried.textured();
+    let painted = test.textured();
     assert_eq!(painted.iter().filter(|block| **block).count(), 5);
-    assert_eq!(tried.find(), None);
-    let said = tried.find().unwrap();
+    assert_eq!(test.find(), None);
+    let said = test.find().unwrap();
     assert!(said.contains("is being searched for already"), "{said}");
-    let seen = tried.follow("finding", |reply| !reply["best_percent"].is_null());
+    let seen = test.follow("finding", |reply| !reply["best_percent"].is_null());
     let seen = seen.last().unwrap();
     assert!(
         number(&seen["textures"]) > 0.0 && number(&seen["best_percent"]) < 0.0,
         "{seen}"
     );
     assert!(!seen["best_texture"].as_array().unwrap().is_empty());
-    assert_eq!(tried.textured(), painted);
-    let mut replies = tried.ask(json!({ "do": "find_stop" }));
-    replies.extend(tried.follow("found", |_| true));
+    assert_eq!(test.textured(), painted);
+    let mut replies = test.ask(json!({ "do": "find_stop" }));
+    replies.extend(test.follow("found", |_| true));
     assert!(
         replies
             .iter()
@@ -448,22 +448,22 @@ fn the_best_of_a_stopped_search_replaces_the_painted_texture_and_undo_brings_it_
     // A search may cover 3 % if less is painted.
     let percent = number(&case["texture_percent"]);
     assert!(percent > 1.25 && percent <= 3.0, "{percent}");
-    assert_ne!(tried.textured(), painted);
-    tried.ask(json!({ "do": "undo" }));
-    assert_eq!(tried.textured(), painted);
-    tried.ask(json!({ "do": "redo" }));
-    assert_ne!(tried.textured(), painted);
+    assert_ne!(test.textured(), painted);
+    test.ask(json!({ "do": "undo" }));
+    assert_eq!(test.textured(), painted);
+    test.ask(json!({ "do": "redo" }));
+    assert_ne!(test.textured(), painted);
 }
 
 /// The search of this host reports its best texture, but does not end.
 #[test]
 fn a_search_ends_when_its_time_is_over() {
-    let mut tried = Tried::with(PLAIN);
-    tried.host.is_endless.set(true);
-    assert_eq!(tried.find(), None);
-    let began = tried.now;
-    let found = tried.found();
-    assert!(tried.now - began >= Duration::from_secs(60));
+    let mut test = TestSession::with(PLAIN);
+    test.host.is_endless.set(true);
+    assert_eq!(test.find(), None);
+    let began = test.now;
+    let found = test.found();
+    assert!(test.now - began >= Duration::from_secs(60));
     // Nothing was painted.
     assert!(
         found["outcome"] == "replaced" && found["painted"].is_null(),
@@ -475,21 +475,21 @@ fn a_search_ends_when_its_time_is_over() {
 /// The slider has room for one square, in three places. A first search finds the best of them.
 #[test]
 fn a_texture_that_nothing_is_better_than_stays() {
-    let mut tried = Tried::with("slider.blocks = [9, 3]\ndrive.v_star = 0.1\n");
-    tried.ask(json!({
+    let mut test = TestSession::with("slider.blocks = [9, 3]\ndrive.v_star = 0.1\n");
+    test.ask(json!({
         "do": "paint", "points": [[1.5, 1.5]], "radius": 1.6, "textured": true, "gesture": 1,
     }));
-    assert_eq!(tried.textured().iter().filter(|block| **block).count(), 9);
-    assert_eq!(tried.find(), None);
-    tried.found();
-    let best = tried.textured();
-    assert_eq!(tried.find(), None);
-    let replies = tried.follow("found", |_| true);
+    assert_eq!(test.textured().iter().filter(|block| **block).count(), 9);
+    assert_eq!(test.find(), None);
+    test.found();
+    let best = test.textured();
+    assert_eq!(test.find(), None);
+    let replies = test.follow("found", |_| true);
     assert!(replies.iter().all(|reply| reply["is"] != "case"), "{replies:?}");
     let found = replies.last().unwrap();
     assert_eq!(found["outcome"], "kept", "{found}");
     assert_eq!(found["best"], found["painted"]);
-    assert_eq!(tried.textured(), best);
+    assert_eq!(test.textured(), best);
 }
 
 #[test]
@@ -500,21 +500,21 @@ fn a_change_by_hand_gives_a_search_up() {
         json!({ "do": "undo" }),
         json!({ "do": "open", "source": { "toml": PLAIN } }),
     ] {
-        let mut tried = Tried::with(PLAIN);
-        tried.ask(json!({ "do": "set", "keys": { "friction.r_star": 0.3 }, "gesture": 1 }));
-        assert_eq!(tried.find(), None);
+        let mut test = TestSession::with(PLAIN);
+        test.ask(json!({ "do": "set", "keys": { "friction.r_star": 0.3 }, "gesture": 1 }));
+        assert_eq!(test.find(), None);
         // Requests that change nothing do not end the search.
         for other in [
             json!({ "do": "rest" }),
             json!({ "do": "redo" }),
             json!({ "do": "view", "pace": 3 }),
         ] {
-            tried.ask(other);
+            test.ask(other);
         }
-        tried.ask(json!({ "do": "set", "keys": { "friction.r_star": -1 }, "gesture": 1 }));
-        assert!(tried.session.search.is_some());
-        let replies = tried.ask(change.clone());
-        assert!(tried.session.search.is_none(), "{change}");
+        test.ask(json!({ "do": "set", "keys": { "friction.r_star": -1 }, "gesture": 1 }));
+        assert!(test.session.search.is_some());
+        let replies = test.ask(change.clone());
+        assert!(test.session.search.is_none(), "{change}");
         let found = replies.iter().find(|reply| reply["is"] == "found").unwrap();
         assert_eq!(found["outcome"], "given_up");
     }
@@ -522,7 +522,7 @@ fn a_change_by_hand_gives_a_search_up() {
 
 #[test]
 fn what_cannot_be_searched_for_is_refused_with_the_reason() {
-    let said = Tried::new().find().unwrap();
+    let said = TestSession::new().find().unwrap();
     assert_eq!(said, "no case is open yet");
     for (case, reason) in [
         (
@@ -534,11 +534,11 @@ fn what_cannot_be_searched_for_is_refused_with_the_reason() {
             "the slider is too large for a search of a minute: to try a texture takes",
         ),
     ] {
-        let said = Tried::with(case).find().unwrap();
+        let said = TestSession::with(case).find().unwrap();
         assert!(said.starts_with(reason), "{said}");
     }
     // This is known only once the search has begun.
-    let mut narrow = Tried::with("slider.blocks = [7, 3]\ndrive.v_star = 0.1");
+    let mut narrow = TestSession::with("slider.blocks = [7, 3]\ndrive.v_star = 0.1");
     assert_eq!(narrow.find(), None);
     let replies = narrow.follow("found", |found| found["outcome"] == "failed");
     let refused = replies.iter().find(|reply| reply["is"] == "refused").unwrap();
@@ -552,14 +552,13 @@ fn what_cannot_be_searched_for_is_refused_with_the_reason() {
 /// A search that is stopped before it has reported anything.
 #[test]
 fn a_search_that_is_stopped_at_once_has_found_nothing() {
-    let mut tried = Tried::with(PLAIN);
-    tried
-        .session
+    let mut test = TestSession::with(PLAIN);
+    test.session
         .handle(crate::protocol::Message::parse(&json!({ "do": "find", "gesture": 5 }).to_string()).unwrap());
-    let search = tried.session.search.as_mut().unwrap();
+    let search = test.session.search.as_mut().unwrap();
     // Events up to now are ignored.
     search.task = Box::new(Silent);
-    let replies = tried.ask(json!({ "do": "find_stop" }));
+    let replies = test.ask(json!({ "do": "find_stop" }));
     let refused = replies.iter().find(|reply| reply["is"] == "refused").unwrap();
     assert_eq!(
         refused["sentence"],
@@ -578,8 +577,8 @@ impl crate::host::Task for Silent {
 }
 
 /// Shapes of the textures of the present case.
-fn shapes(tried: &Tried) -> Vec<String> {
-    let textures = tried.session.document().unwrap().textures();
+fn shapes(test: &TestSession) -> Vec<String> {
+    let textures = test.session.document().unwrap().textures();
     let shape = |texture: &Value| texture["shape"].as_str().unwrap().to_owned();
     textures.as_array().unwrap().iter().map(shape).collect()
 }
@@ -587,15 +586,15 @@ fn shapes(tried: &Tried) -> Vec<String> {
 /// Painting between shapes, erasing the paint, and erasing part of a shape.
 #[test]
 fn paint_is_a_layer_beside_the_shapes_until_a_part_of_one_is_taken_away() {
-    let mut tried = Tried::with(
+    let mut test = TestSession::with(
         "slider.blocks = [20, 20]\ntexture = [{ shape = 'cavity', coverage = 5 }, { shape = 'groove', coverage = 10, offset = '-8 um' }]\n",
     );
-    let before = tried.textured();
+    let before = test.textured();
     let mut paint = |y: f64, textured: bool, gesture: u64| {
-        tried.ask(json!({
+        test.ask(json!({
             "do": "paint", "points": [[6.5, y], [17.5, y]], "radius": 0.3, "textured": textured, "gesture": gesture,
         }));
-        (shapes(&tried), tried.textured())
+        (shapes(&test), test.textured())
     };
     // Two strokes form one layer with 12 blocks in each row. None of them are blocks of the groove.
     for (y, blocks) in [(1.5, 12), (3.5, 24)] {
@@ -621,13 +620,14 @@ fn paint_is_a_layer_beside_the_shapes_until_a_part_of_one_is_taken_away() {
 /// Paint below a shape stays, and is visible when the shape is moved away.
 #[test]
 fn paint_below_a_shape_stays() {
-    let mut tried = Tried::with("slider.blocks = [20, 20]\ntexture = [{ shape = 'cavity', coverage = 5 }]\n");
-    tried.ask(
+    let mut test =
+        TestSession::with("slider.blocks = [20, 20]\ntexture = [{ shape = 'cavity', coverage = 5 }]\n");
+    test.ask(
         json!({ "do": "paint", "points": [[10.5, 10.5]], "radius": 0.3, "textured": true, "gesture": 1 }),
     );
     let table = json!([{ "shape": "cavity", "coverage": 5, "center": ["4 um", "4 um"] }, { "shape": "mask", "file": "texture.png" }]);
-    tried.ask(json!({ "do": "set", "keys": { "texture": table }, "gesture": 2 }));
-    assert!(tried.textured()[10 * 20 + 10]);
+    test.ask(json!({ "do": "set", "keys": { "texture": table }, "gesture": 2 }));
+    assert!(test.textured()[10 * 20 + 10]);
 }
 
 /// The files of a run's folder, in Base64.
@@ -644,36 +644,36 @@ fn run_files(case: &str) -> serde_json::Map<String, Value> {
 
 #[test]
 fn the_files_of_a_run_are_replayed_and_other_files_are_refused() {
-    let mut tried = Tried::with(PLAIN);
+    let mut test = TestSession::with(PLAIN);
     let files = run_files("slider.blocks = [4, 4]\ntime.duration_star = 20\noutput.snapshots = [5, 10]\n");
     let open = |files: &serde_json::Map<String, Value>| json!({ "do": "open", "source": { "name": "kept", "run": files } });
-    let replies = tried.ask(open(&files));
+    let replies = test.ask(open(&files));
     let recorded = replies.iter().find(|reply| reply["is"] == "recorded").unwrap();
     assert_eq!(recorded["times_star"], json!([5.0, 10.0]));
     let case = replies.iter().find(|reply| reply["is"] == "case").unwrap();
     assert_eq!((&case["name"], &case["blocks"]), (&json!("kept"), &json!([4, 4])));
-    let refused = |files: &serde_json::Map<String, Value>, tried: &mut Tried| {
-        let replies = tried.ask(open(files));
+    let refused = |files: &serde_json::Map<String, Value>, test: &mut TestSession| {
+        let replies = test.ask(open(files));
         let refused = replies.iter().find(|reply| reply["is"] == "refused");
         refused.map(|reply| reply["sentence"].as_str().unwrap().to_owned())
     };
     // A run without its file of fields, as when that is too large, is accepted.
     let mut without = files.clone();
     without.remove("fields.nc");
-    assert_eq!(refused(&without, &mut tried), None);
+    assert_eq!(refused(&without, &mut test), None);
     for name in ["case.toml", "series.csv", "summary.json"] {
         let mut without = files.clone();
         without.remove(name);
-        let said = refused(&without, &mut tried).unwrap();
+        let said = refused(&without, &mut test).unwrap();
         assert_eq!(said, format!("kept is no folder of a run: it has no {name}"));
         let mut damaged = files.clone();
         damaged.insert(name.to_owned(), crate::base64::encode(b"[").into());
-        let said = refused(&damaged, &mut tried).unwrap();
+        let said = refused(&damaged, &mut test).unwrap();
         assert!(said.contains(name) || said.contains("kept:"), "{name}: {said}");
     }
     let mut damaged = files;
     damaged.insert("fields.nc".to_owned(), crate::base64::encode(b"CDF").into());
-    let said = refused(&damaged, &mut tried).unwrap();
+    let said = refused(&damaged, &mut test).unwrap();
     assert!(said.contains("fields.nc"), "{said}");
 }
 
@@ -704,13 +704,12 @@ fn two_unknowns() -> Value {
 
 #[test]
 fn a_record_is_read_and_stays_where_the_case_changes() {
-    let mut tried = Tried::with(STICKS);
+    let mut test = TestSession::with(STICKS);
     // The session has not checked the job when the case changes.
     let message = json!({ "do": "read_record", "record": record() }).to_string();
-    tried
-        .session
+    test.session
         .handle(crate::protocol::Message::parse(&message).unwrap());
-    let replies = tried.ask_for(
+    let replies = test.ask_for(
         json!({ "do": "set", "keys": { "drive.v_star": 0.2 }, "gesture": 1 }),
         "record",
     );
@@ -722,8 +721,8 @@ fn a_record_is_read_and_stays_where_the_case_changes() {
 /// The host of the tests has two workers, which make the runs that the calibration wants.
 #[test]
 fn a_calibration_finds_what_one_of_the_command_finds() {
-    let mut tried = Tried::with(STICKS);
-    let replies = tried.ask_for(calibration(&two_unknowns()), "calibrated");
+    let mut test = TestSession::with(STICKS);
+    let replies = test.ask_for(calibration(&two_unknowns()), "calibrated");
     let stages: Vec<&Value> = replies
         .iter()
         .filter(|reply| reply["is"] == "calibrating")
@@ -751,7 +750,7 @@ fn a_calibration_finds_what_one_of_the_command_finds() {
     assert_eq!(results["report"], found.report);
     assert_eq!(results["set"].as_object().unwrap().len(), 2);
     // The case accepts the medians as keys.
-    let replies = tried.ask(json!({ "do": "set", "keys": results["set"], "gesture": 2 }));
+    let replies = test.ask(json!({ "do": "set", "keys": results["set"], "gesture": 2 }));
     assert_eq!(count(&replies, "refused"), 0, "{replies:?}");
 }
 
@@ -764,9 +763,9 @@ fn a_calibration_ends_with_its_case_and_by_a_stop() {
             "given_up",
         ),
     ] {
-        let mut tried = Tried::with(STICKS);
-        tried.ask(calibration(&two_unknowns()));
-        let replies = tried.ask_for(request, "calibrated");
+        let mut test = TestSession::with(STICKS);
+        test.ask(calibration(&two_unknowns()));
+        let replies = test.ask_for(request, "calibrated");
         let ended = replies.iter().find(|reply| reply["is"] == "calibrated").unwrap();
         assert_eq!(ended["outcome"], outcome);
     }
@@ -774,15 +773,15 @@ fn a_calibration_ends_with_its_case_and_by_a_stop() {
 
 #[test]
 fn what_cannot_be_calibrated_says_why() {
-    let mut tried = Tried::with(STICKS);
-    let one = tried.ask(calibration(&json!({ "friction.r_star": [0.4, 0.9] })));
+    let mut test = TestSession::with(STICKS);
+    let one = test.ask(calibration(&json!({ "friction.r_star": [0.4, 0.9] })));
     let refused = one.iter().find(|reply| reply["is"] == "refused").unwrap();
     assert!(
         refused["sentence"].as_str().unwrap().contains("2 to 4"),
         "{refused}"
     );
     let wrong = json!({ "friction.mu_static": [0.3, 0.9], "friction.no_such": [0.4, 0.9] });
-    let failed = tried.ask_for(calibration(&wrong), "calibrated").pop().unwrap();
+    let failed = test.ask_for(calibration(&wrong), "calibrated").pop().unwrap();
     assert_eq!(failed["outcome"], "failed");
     assert!(
         failed["sentence"].as_str().unwrap().contains("no_such"),
@@ -792,33 +791,34 @@ fn what_cannot_be_calibrated_says_why() {
 
 #[test]
 fn sensitivity_is_the_change_between_two_runs() {
-    let mut tried = Tried::with("slider.blocks = [10, 10]\ndrive.v_star = 0.1");
-    let kinetic = tried
+    let mut test = TestSession::with("slider.blocks = [10, 10]\ndrive.v_star = 0.1");
+    let kinetic = test
         .ask_for(json!({ "do": "sensitivity", "control": "r_star" }), "sensitivity")
         .pop()
         .unwrap();
     assert_eq!(kinetic["values"], json!([0.5, 0.55]));
-    let scatter = tried
+    let scatter = test
         .ask_for(json!({ "do": "sensitivity", "control": "sigma" }), "sensitivity")
         .pop()
         .unwrap();
     // With more scatter, slip begins earlier.
     assert!(number(&scatter["percent"]) < -0.1, "{scatter}");
     for control in ["seed", "no such"] {
-        let replies = tried.ask(json!({ "do": "sensitivity", "control": control }));
+        let replies = test.ask(json!({ "do": "sensitivity", "control": control }));
         assert_eq!(count(&replies, "refused"), 1, "{replies:?}");
     }
 }
 
 #[test]
 fn a_texture_is_drawn() {
-    let mut tried = Tried::with("slider.blocks = [20, 20]\ntexture = [{ shape = 'cavity', coverage = 10 }]");
-    let drawn = tried
+    let mut test =
+        TestSession::with("slider.blocks = [20, 20]\ntexture = [{ shape = 'cavity', coverage = 10 }]");
+    let drawn = test
         .ask_for(json!({ "do": "drawing", "format": "dxf" }), "drawing")
         .pop()
         .unwrap();
     assert!(drawn["text"].as_str().unwrap().contains("CIRCLE"), "{drawn}");
-    let mut plain = Tried::with(STICKS);
+    let mut plain = TestSession::with(STICKS);
     let refused = plain
         .ask_for(json!({ "do": "drawing", "format": "svg" }), "refused")
         .pop()

@@ -74,7 +74,7 @@ impl Session {
             can_redo: history.can_redo(),
             leg: live.leg,
             why,
-            time_before_s: live.time_before_s(),
+            time_before_s: live.before.time_s,
             twin: self.twin.is_some(),
             has_memory: live.has_memory(),
             mesh: case.deciding_length(),
@@ -197,7 +197,7 @@ impl Session {
         let summary = live
             .summary()
             .and_then(|summary| serde_json::from_str(&summary_json(&summary)).ok());
-        let before = live.drive_time_before_star();
+        let before = live.before.drive_time_star;
         let instants = live
             .running()
             .instants()
@@ -263,12 +263,12 @@ impl Session {
     fn send_kymograph(&mut self) {
         let Some(live) = &self.live else { return };
         let case = live.case();
-        let bins = PositionBins::of(&case.model.lattice, &case.model.drive);
+        let bins = PositionBins::new(&case.model.lattice, &case.model.drive);
         if let Some(picture) = picture::kymograph(
             live.running().kymograph(),
             &bins,
             case.time_plan.dt_star,
-            live.time_before_star(),
+            live.before.time_star,
         ) {
             self.host.kymograph(picture);
         }

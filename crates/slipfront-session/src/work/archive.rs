@@ -11,6 +11,7 @@ use slipfront_run::results;
 use slipfront_run::running::Running;
 
 use crate::document::Document;
+use crate::sentence::sentence;
 use crate::zip;
 
 /// Share of a run between two progress reports.
@@ -29,10 +30,6 @@ pub fn run_archive(
     now: &dyn Fn() -> (String, Duration),
     report_progress: &dyn Fn(f64),
 ) -> Result<Vec<u8>, String> {
-    /// Converts any error to its message.
-    fn sentence(error: impl std::fmt::Display) -> String {
-        error.to_string()
-    }
     let (started, began) = now();
     let case = Arc::new(document.case(&mut |_| true).map_err(sentence)?);
     let mut running = Running::start(&case, None, Execution::default());

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::Map;
 use slipfront_calibrate::{
-    CalibrationInMemory, CalibrationProgress, CalibrationStage as Stage, Outcome, WantedRun as Wanted,
+    CalibrationInMemory, CalibrationProgress, CalibrationStage as Stage, Outcome, WantedRun,
 };
 use slipfront_run::measured::{Measure, columns_of};
 use toml::{Table, Value};
@@ -13,10 +13,11 @@ use toml::{Table, Value};
 use super::record::Chosen;
 use crate::base64;
 use crate::document::Document;
-use crate::event::{Event, EventKind, MadeRun, WantedRun, Worker};
+use crate::event::{Event, EventKind, MadeRun, Worker};
 use crate::protocol::{
     CalibrateRequest, CalibratingReply, CalibrationResults, CalibrationStage, UnknownReply,
 };
+use crate::sentence::sentence;
 
 /// Calibrates a case. If other jobs make its runs, all except those of a search for the closest curve, this
 /// job ends with the list of runs that it needs first.
@@ -27,86 +28,73 @@ pub(super) fn calibrate(
     is_elsewhere: bool,
     worker: &dyn Worker,
 ) {
-    let tell = |kind| worker.tell(Event(kind));
-    match find(document, request, made, is_elsewhere, worker) {
-        Ok(Found::Results(results)) => {
-            let results = serde_json::to_value(results).map_err(|error| error.to_string());
-            tell(EventKind::Calibrated(results));
-        }
-        Ok(Found::Wants(wanted)) => tell(EventKind::Wants(wanted)),
-        Err(sentence) => tell(EventKind::Calibrated(Err(sentence))),
-    }
+    let found = find(document, request, made, is_elsewhere, worker);
+    worker.send(Event(
+        found.unwrap_or_else(|sentence| EventKind::Calibrated(Err(sentence))),
+    ));
 }
 
 /// Makes runs that a calibration wants, and reports each.
 pub(super) fn make_runs(
     document: &Document,
     request: &CalibrateRequest,
-    wanted: &[WantedRun],
+    wanted: &[String],
     worker: &dyn Worker,
 ) {
-    let tell = |made| worker.tell(Event(EventKind::Made(made)));
-    let calibration = match Request::of(document, request).and_then(|request| request.calibration()) {
+    let send = |made| worker.send(Event(EventKind::Made(made)));
+    let calibration = match Request::read(document, request).and_then(|request| request.calibration()) {
         Ok(calibration) => calibration,
-        Err(sentence) => return tell(Err(sentence)),
+        Err(sentence) => return send(Err(sentence)),
     };
     for run in wanted {
-        let made = read_wanted(run).and_then(|run| {
-            let made = calibration.make(&run, worker.stop());
-            made.map_err(|error| error.to_string())
-        });
+        let made = read_wanted(run).and_then(|run| calibration.make(&run, worker.stop()).map_err(sentence));
         match made {
-            Ok(Some(curves)) => tell(Ok(json(&curves))),
+            Ok(Some(curves)) => send(Ok(json(&curves))),
             Ok(None) => return,
-            Err(sentence) => return tell(Err(sentence)),
+            Err(sentence) => return send(Err(sentence)),
         }
     }
 }
 
-/// Results of a calibration, or the runs that it needs first.
-enum Found {
-    Results(CalibrationResults),
-    Wants(Vec<WantedRun>),
-}
-
+/// Returns the event with the results of a calibration, or with the runs that it needs first.
 fn find(
     document: &Document,
     request: &CalibrateRequest,
     made: &[MadeRun],
     is_elsewhere: bool,
     worker: &dyn Worker,
-) -> Result<Found, String> {
-    let request = Request::of(document, request)?;
+) -> Result<EventKind, String> {
+    let request = Request::read(document, request)?;
     let mut calibration = request.calibration()?;
     for made in made {
-        let curves = serde_json::from_str(&made.curves).map_err(|error| error.to_string())?;
+        let curves = serde_json::from_str(&made.curves).map_err(sentence)?;
         calibration.add(read_wanted(&made.wanted)?, curves);
     }
     let mut watch = |now: &CalibrationProgress| {
-        worker.tell(Event(EventKind::Calibrating(CalibratingReply {
+        worker.send(Event(EventKind::Calibrating(CalibratingReply {
             stage: stage(now.stage),
             runs: made.len() + now.runs,
-            of: made.len() + now.of,
+            of: made.len() + now.total,
         })));
     };
     let found = calibration.find(is_elsewhere, worker.stop(), &mut watch);
-    match found.map_err(|error| error.to_string())? {
-        Outcome::Found(found) => request.results(found).map(Found::Results),
-        Outcome::Wants(wanted) => {
-            let wanted = wanted.iter().map(|run| WantedRun(json(run)));
-            Ok(Found::Wants(wanted.collect()))
+    match found.map_err(sentence)? {
+        Outcome::Found(found) => {
+            let results = serde_json::to_value(request.results(found)?).map_err(sentence)?;
+            Ok(EventKind::Calibrated(Ok(results)))
         }
+        Outcome::Wants(wanted) => Ok(EventKind::Wants(wanted.iter().map(json).collect())),
     }
 }
 
 /// Serialises a value as JSON.
-fn json(of: &impl serde::Serialize) -> String {
+fn json(value: &impl serde::Serialize) -> String {
     // Structs of texts and finite numbers: serialisation cannot fail.
-    serde_json::to_string(of).expect("a run is JSON")
+    serde_json::to_string(value).expect("a run is JSON")
 }
 
-fn read_wanted(run: &WantedRun) -> Result<Wanted, String> {
-    serde_json::from_str(&run.0).map_err(|error| error.to_string())
+fn read_wanted(run: &str) -> Result<WantedRun, String> {
+    serde_json::from_str(run).map_err(sentence)
 }
 
 /// Stage in the progress report for a page; calibrations of a page reach no other stages.
@@ -128,13 +116,13 @@ struct Request<'a> {
 }
 
 impl<'a> Request<'a> {
-    fn of(document: &'a Document, request: &'a CalibrateRequest) -> Result<Self, String> {
+    fn read(document: &'a Document, request: &'a CalibrateRequest) -> Result<Self, String> {
         let file = &request.record;
         let bytes = base64::decode(&file.bytes)?;
-        let columns = columns_of(&bytes, Path::new(&file.name)).map_err(|error| error.to_string())?;
+        let columns = columns_of(&bytes, Path::new(&file.name)).map_err(sentence)?;
         Ok(Self {
             document,
-            toml: calibration_file(document, request, Chosen::of(file, &columns)?)?,
+            toml: calibration_file(document, request, Chosen::find(file, &columns)?)?,
             name: &file.name,
             bytes,
         })
@@ -144,8 +132,7 @@ impl<'a> Request<'a> {
         let files = self.document.files_in_memory();
         let record = (self.name, self.bytes.clone());
         let threads = rayon::current_num_threads();
-        let calibration = CalibrationInMemory::new(&self.toml, files, record, threads);
-        calibration.map_err(|error| error.to_string())
+        CalibrationInMemory::new(&self.toml, files, record, threads).map_err(sentence)
     }
 
     fn results(&self, found: slipfront_calibrate::CalibrationResults) -> Result<CalibrationResults, String> {
@@ -156,7 +143,7 @@ impl<'a> Request<'a> {
             is_refused: bool,
         }
         let findings = serde_json::from_str(&found.numbers);
-        let Findings { unknowns, is_refused } = findings.map_err(|error| error.to_string())?;
+        let Findings { unknowns, is_refused } = findings.map_err(sentence)?;
         let set = found.set.into_iter();
         let set: Map<_, _> = set
             .map(|(key, value)| (key, serde_json::to_value(value).unwrap_or_default()))
@@ -183,7 +170,7 @@ fn calibration_file(
     let ranges = request.unknowns.iter();
     let ranges = ranges.map(|(key, range)| Ok((key.clone(), Value::try_from(range)?)));
     let ranges: Result<Vec<(String, Value)>, toml::ser::Error> = ranges.collect();
-    let ranges = ranges.map_err(|error| error.to_string())?;
+    let ranges = ranges.map_err(sentence)?;
     let (against, unit) = match chosen.along {
         Measure::Displacement => ("displacement", "m"),
         _ => ("time", "s"),
@@ -217,5 +204,5 @@ fn calibration_file(
             Value::Table(texts.chain(numbers).collect()),
         ),
     ]);
-    toml::to_string_pretty(&file).map_err(|error| error.to_string())
+    toml::to_string_pretty(&file).map_err(sentence)
 }

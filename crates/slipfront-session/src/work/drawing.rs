@@ -1,12 +1,13 @@
 //! The texture of a case as a drawing.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use slipfront_case::texture_file::{self, Options};
 
 use crate::document::Document;
 use crate::protocol::{DrawingFormat, DrawingReply};
+use crate::sentence::sentence;
 
 /// Draws the outlines of the texture to scale.
 ///
@@ -20,14 +21,13 @@ pub(super) fn draw(
     if !document.has_texture() {
         return Err("the case has no texture to be drawn: paint one, or choose a case with one".to_owned());
     }
-    let case = document.case_to_show(&mut |_| !stop.load(Ordering::Relaxed));
-    let case = case.map_err(|error| error.to_string())?;
+    let case = document.case_unless(stop)?;
     let name = match format {
         DrawingFormat::Dxf => "texture.dxf",
         DrawingFormat::Svg => "texture.svg",
     };
     let drawn = texture_file::contents(&case, Path::new(name), Options::default());
-    let (bytes, notes) = drawn.map_err(|error| error.to_string())?;
+    let (bytes, notes) = drawn.map_err(sentence)?;
     Ok(DrawingReply {
         format,
         text: String::from_utf8_lossy(&bytes).into_owned(),

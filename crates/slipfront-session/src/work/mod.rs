@@ -17,16 +17,16 @@ impl Job {
     /// Runs the job until it is done or the worker is to stop.
     pub fn run(&self, worker: &dyn Worker) {
         let Self { document, kind } = self;
-        let tell = |kind| worker.tell(Event(kind));
+        let send = |kind| worker.send(Event(kind));
         let reply = |of, found: Result<Reply, String>| {
             let found = found.unwrap_or_else(|sentence| Reply::Refused { of, sentence });
-            tell(EventKind::Replied(found.json()));
+            send(EventKind::Replied(found.json()));
         };
         match kind {
             JobKind::Repeat(seeds) => repeat::repeat(document, seeds, worker),
-            JobKind::Search => tell(EventKind::Searched(search::search(document, worker))),
+            JobKind::Search => send(EventKind::Searched(search::search(document, worker))),
             JobKind::Compare(best) => {
-                tell(EventKind::Compared(search::compare(
+                send(EventKind::Compared(search::compare(
                     document,
                     best,
                     worker.stop(),

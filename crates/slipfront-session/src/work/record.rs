@@ -9,7 +9,8 @@ use slipfront_run::measured::{
 };
 
 use crate::base64;
-use crate::protocol::{RecordAbscissa, RecordColumn, RecordCurve, RecordFile, RecordOrdinate, RecordReply};
+use crate::protocol::{RecordCurve, RecordFile, RecordReply};
+use crate::sentence::sentence;
 
 /// Largest number of values of a record that are sent to the page: more than the pixels of a screen.
 const MOST_VALUES: usize = 4000;
@@ -23,36 +24,25 @@ pub(super) fn read(file: &RecordFile) -> RecordReply {
         problem: None,
         notes: Vec::new(),
     };
-    let bytes = match base64::decode(&file.bytes) {
-        Ok(bytes) => bytes,
-        Err(sentence) => {
-            reply.problem = Some(sentence);
-            return reply;
-        }
-    };
-    let path = Path::new(&file.name);
-    let columns = match columns_of(&bytes, path) {
-        Ok(columns) => columns,
-        Err(error) => {
-            reply.problem = Some(error.to_string());
-            return reply;
-        }
-    };
-    reply.columns = columns
-        .iter()
-        .map(|TableColumn { name, unit }| RecordColumn {
-            name: name.clone(),
-            unit: unit.clone(),
-        })
-        .collect();
-    match Chosen::of(file, &columns).and_then(|chosen| Ok((chosen.read(&bytes, path)?, chosen))) {
-        Ok((record, chosen)) => {
-            reply.notes = record.notes().collect();
-            reply.curve = Some(curve(&record, chosen.places));
-        }
-        Err(sentence) => reply.problem = Some(sentence),
+    if let Err(sentence) = read_into(&mut reply, file) {
+        reply.problem = Some(sentence);
     }
     reply
+}
+
+/// Reads a record as far as it can be read.
+///
+/// # Errors
+/// A sentence on why there is no curve.
+fn read_into(reply: &mut RecordReply, file: &RecordFile) -> Result<(), String> {
+    let bytes = base64::decode(&file.bytes)?;
+    let path = Path::new(&file.name);
+    reply.columns = columns_of(&bytes, path).map_err(sentence)?;
+    let chosen = Chosen::find(file, &reply.columns)?;
+    let record = chosen.read(&bytes, path)?;
+    reply.notes = record.notes().collect();
+    reply.curve = Some(curve(&record, chosen.places));
+    Ok(())
 }
 
 /// The columns of a record: those that were requested, or else those that their units suggest.
@@ -68,7 +58,7 @@ impl Chosen {
     ///
     /// # Errors
     /// A sentence, if there is no such column.
-    pub(super) fn of(file: &RecordFile, columns: &[TableColumn]) -> Result<Self, String> {
+    pub(super) fn find(file: &RecordFile, columns: &[TableColumn]) -> Result<Self, String> {
         let [x, y] = suggested(columns).ok_or("the table has one column, where a record has two")?;
         let place = |asked: &Option<String>, suggested: usize| {
             let Some(asked) = asked else { return Ok(suggested) };
@@ -129,7 +119,7 @@ impl Chosen {
                      the unit that its numbers have"
                 )
             }
-            error => error.to_string(),
+            error => sentence(error),
         })
     }
 }
@@ -140,14 +130,8 @@ fn curve(record: &MeasuredRecord, columns: [usize; 2]) -> RecordCurve {
     let thinned = |values: &[f64]| values.iter().copied().step_by(step).collect();
     RecordCurve {
         columns,
-        along: match record.along {
-            Measure::Displacement => RecordAbscissa::Displacement,
-            _ => RecordAbscissa::Time,
-        },
-        of: match record.of {
-            Measure::Coefficient => RecordOrdinate::Coefficient,
-            _ => RecordOrdinate::Force,
-        },
+        along: record.along,
+        of: record.quantity,
         values: record.x.len(),
         x: thinned(&record.x),
         y: thinned(&record.y),
@@ -175,10 +159,7 @@ mod tests {
         let read = read(&file("t (ms);Fz (N);Fx (mN)\n0;9;1\n1;9;2\n2;9;3\n"));
         let curve = read.curve.unwrap();
         assert_eq!((curve.columns, curve.values), ([0, 2], 3));
-        assert_eq!(
-            (curve.along, curve.of),
-            (RecordAbscissa::Time, RecordOrdinate::Force)
-        );
+        assert_eq!((curve.along, curve.of), (Measure::Time, Measure::Force));
         assert_eq!((curve.x[2], curve.y[2]), (0.002, 0.003));
         assert_eq!(read.columns[2].unit.as_deref(), Some("mN"));
     }
@@ -190,7 +171,7 @@ mod tests {
         assert!(problem.contains("unit of column"), "{problem}");
         (file.x_unit, file.y_unit) = (Some("um".to_owned()), Some("N".to_owned()));
         let curve = read(&file).curve.unwrap();
-        assert_eq!((curve.along, curve.x[2]), (RecordAbscissa::Displacement, 2e-6));
+        assert_eq!((curve.along, curve.x[2]), (Measure::Displacement, 2e-6));
     }
 
     #[test]

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use slipfront_case::case::Case;
 use slipfront_run::running::run_unless;
 use slipfront_run::summary::Summary;
 use toml::Value;
@@ -12,13 +11,14 @@ use crate::controls::TwoValues;
 use crate::document::Document;
 use crate::event::{Event, EventKind, Frictions, Worker};
 use crate::protocol::SensitivityReply;
+use crate::sentence::sentence;
 
 /// Runs the case, with and without its texture, with each of the seeds to the end of its first peak.
 pub(super) fn repeat(document: &Document, seeds: &[u64], worker: &dyn Worker) {
     let twin = document.has_texture().then(|| document.twin()).transpose();
     let twin = match twin {
         Ok(twin) => twin,
-        Err(error) => return worker.tell(Event(EventKind::Repeated(Err(error)))),
+        Err(error) => return worker.send(Event(EventKind::Repeated(Err(error)))),
     };
     let documents: Vec<&Document> = [document].into_iter().chain(&twin).collect();
     for &seed in seeds {
@@ -30,7 +30,7 @@ pub(super) fn repeat(document: &Document, seeds: &[u64], worker: &dyn Worker) {
             return;
         };
         let goes_on = found.is_ok();
-        worker.tell(Event(EventKind::Repeated(found)));
+        worker.send(Event(EventKind::Repeated(found)));
         if !goes_on {
             return;
         }
@@ -46,10 +46,9 @@ pub(super) fn static_friction(
 ) -> Result<Option<Option<f64>>, String> {
     let keys = [(key, value), ("time.stop", Value::from("after_onset"))];
     let changed = document.with(keys.map(|(key, value)| (key.to_owned(), Some(value))))?;
-    let case = changed.case_to_show(&mut |_| !stop.load(Ordering::Relaxed));
-    let case: Arc<Case> = Arc::new(case.map_err(|error| error.to_string())?);
+    let case = Arc::new(changed.case_unless(stop)?);
     let record = run_unless(&case, &|| stop.load(Ordering::Relaxed));
-    let record = record.transpose().map_err(|error| error.to_string())?;
+    let record = record.transpose().map_err(sentence)?;
     let found = |summary: &Summary| summary.transition.then_some(summary.static_friction_star);
     Ok(record.map(|record| found(&record.summary)))
 }
@@ -61,22 +60,22 @@ pub(super) fn static_friction(
 /// A sentence, if the case cannot be run, or the job was stopped.
 pub(super) fn sensitivity(
     document: &Document,
-    of: &TwoValues,
+    compared: &TwoValues,
     stop: &AtomicBool,
 ) -> Result<SensitivityReply, String> {
     let run = |value: &serde_json::Value| {
-        let value = Value::try_from(value).map_err(|error| error.to_string())?;
-        let found = static_friction(document, (&of.key, value), stop)?;
+        let value = Value::try_from(value).map_err(sentence)?;
+        let found = static_friction(document, (&compared.key, value), stop)?;
         found.ok_or_else(|| "the runs were stopped".to_owned())
     };
-    let [first, second] = &of.set_to;
+    let [first, second] = &compared.set_to;
     let percent = match [run(first)?, run(second)?] {
         [Some(first), Some(second)] => Some(100.0 * (second / first - 1.0)),
         _ => None,
     };
     Ok(SensitivityReply {
-        control: of.control.clone(),
-        values: of.values,
+        control: compared.control.clone(),
+        values: compared.values,
         percent,
     })
 }

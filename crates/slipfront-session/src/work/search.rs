@@ -2,18 +2,18 @@
 //! one.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use slipfront_base::number_format::count;
-use slipfront_case::case::Case;
 use slipfront_case::texture_file::textured_blocks;
 use slipfront_design::{Bounds, Design, Limits, Quantity, Wish};
 use slipfront_study::StudyError;
 
 use crate::document::Document;
-use crate::event::{Comparison, Event, EventKind, Mask, Tried, Worker};
-use crate::protocol::Estimate;
+use crate::event::{Event, EventKind, Mask, SearchUpdate, Worker};
+use crate::protocol::{Estimate, FoundOutcome, FoundReply};
 use crate::search::{NOTHING_TRIED, SEARCH_TIME, WIDTH, limits};
+use crate::sentence::sentence;
 
 /// Largest number of runs of a search: the default of a design.
 const MAX_RUNS: usize = 10_000;
@@ -26,9 +26,10 @@ const FRESH_SURFACES: u64 = 8;
 /// minute.
 const MAX_BLOCK_STEPS: f64 = 1e7;
 
-/// The design problem of a search, and the painted blocks, if there are any.
-fn design(case: &Case) -> Result<(Design, Option<Vec<bool>>), StudyError> {
-    let allowed = limits(case);
+/// The design problem of a search for a document, and the painted blocks, if there are any.
+fn design_for(document: &Document, stop: &AtomicBool) -> Result<(Design, Option<Vec<bool>>), String> {
+    let case = document.case_unless(stop)?;
+    let allowed = limits(&case);
     let limits = Limits {
         coverage: [0.0, allowed.most_percent],
         feature: allowed.width_blocks as f64,
@@ -36,8 +37,8 @@ fn design(case: &Case) -> Result<(Design, Option<Vec<bool>>), StudyError> {
         ..Limits::default()
     };
     let wish = Wish::Least(Quantity::StaticFriction);
-    let mut design = Design::new(&[(case, wish)], false, limits, 1)?;
-    let painted = Some(textured_blocks(case)).filter(|painted| painted.contains(&true));
+    let mut design = Design::new(&[(&case, wish)], false, limits, 1).map_err(sentence)?;
+    let painted = Some(textured_blocks(&case)).filter(|painted| painted.contains(&true));
     if let Some(painted) = &painted {
         design.begin_with("painted".to_owned(), painted.clone(), None);
     }
@@ -57,9 +58,7 @@ fn refuse_narrow(design: &Design) -> Result<(), String> {
 
 /// Refuses a slider that is too large for `threads` threads to try enough textures in the time.
 fn refuse_large(design: &Design, threads: usize) -> Result<(), String> {
-    let needed = design
-        .block_steps_per_texture()
-        .map_err(|error| error.to_string())?;
+    let needed = design.block_steps_per_texture().map_err(sentence)?;
     let most = MAX_BLOCK_STEPS * threads as f64;
     if needed > most {
         return Err(format!(
@@ -70,13 +69,6 @@ fn refuse_large(design: &Design, threads: usize) -> Result<(), String> {
         ));
     }
     Ok(())
-}
-
-/// The design problem of a search for a document, and the painted blocks, if there are any.
-fn design_for(document: &Document, stop: &AtomicBool) -> Result<(Design, Option<Vec<bool>>), String> {
-    let case = document.case_to_show(&mut |_| !stop.load(Ordering::Relaxed));
-    let case = case.map_err(|error| error.to_string())?;
-    design(&case).map_err(|error| error.to_string())
 }
 
 /// Searches for a texture for [`SEARCH_TIME`], and returns the best one.
@@ -95,7 +87,7 @@ pub(super) fn search(document: &Document, worker: &dyn Worker) -> Result<Mask, S
         cut: None,
     };
     let searched = design.search(&bounds, &mut |now| {
-        worker.tell(Event(EventKind::Tried(Tried {
+        worker.send(Event(EventKind::Tried(SearchUpdate {
             textures: now.textures,
             best_percent: now.best_texture.is_some().then_some(-now.best),
             best_texture: now.best_texture.clone().map(Mask),
@@ -114,29 +106,37 @@ pub(super) fn search(document: &Document, worker: &dyn Worker) -> Result<Mask, S
         .ok_or_else(|| NOTHING_TRIED.to_owned())
 }
 
-/// Compares the best texture of a search with the painted one, on surfaces that the search has not seen.
+/// Compares the best texture of a search with the painted one, on surfaces that the search has not seen. It
+/// is to replace the painted one if it is better by more than the scatter over surfaces.
 ///
 /// # Errors
 /// A sentence, if runs cannot be made, or the comparison was stopped.
-pub(super) fn compare(document: &Document, best: &Mask, stop: &AtomicBool) -> Result<Comparison, String> {
+pub(super) fn compare(document: &Document, best: &Mask, stop: &AtomicBool) -> Result<FoundReply, String> {
     let (design, painted) = design_for(document, stop)?;
     let both: Vec<Arc<Vec<bool>>> = [Arc::clone(&best.0)]
         .into_iter()
         .chain(painted.map(Arc::new))
         .collect();
-    let losses = design.losses_on_fresh(&both, FRESH_SURFACES, stop);
-    let losses = losses.map_err(|error| error.to_string())?;
+    let losses = design
+        .losses_on_fresh(&both, FRESH_SURFACES, stop)
+        .map_err(sentence)?;
     let changes = |losses: &Vec<f64>| {
         let changes: Vec<f64> = losses.iter().map(|loss| 100.0 * (loss - 1.0)).collect();
-        Estimate::of(&changes)
+        Estimate::from_values(&changes)
     };
     // Without texture nothing changes.
     let gain = |(surface, loss): (usize, &f64)| losses.get(1).map_or(1.0, |painted| painted[surface]) - loss;
     let gain: Vec<f64> = losses[0].iter().enumerate().map(gain).collect();
-    Ok(Comparison {
+    let is_better =
+        Estimate::from_values(&gain).is_some_and(|gain| gain.mean - gain.half_width.unwrap_or(0.0) > 0.0);
+    Ok(FoundReply {
+        outcome: match is_better {
+            true => FoundOutcome::Replaced,
+            false => FoundOutcome::Kept,
+        },
+        textures: 0,
         surfaces: losses[0].len(),
         best: changes(&losses[0]),
         painted: losses.get(1).and_then(changes),
-        is_better: Estimate::of(&gain).is_some_and(|gain| gain.mean - gain.half_width.unwrap_or(0.0) > 0.0),
     })
 }

@@ -23,7 +23,7 @@ use slipfront_base::text::COLUMNS;
 use slipfront_run::names::CONVERGENCE;
 
 pub use mesh_study::{MAX_LEVELS, MeshStudy};
-pub use on_meshes::{Convergence, MIN_LEVELS, Mesh, OnMeshes, Verdict};
+pub use on_meshes::{Convergence, MIN_LEVELS, Mesh, MeshVerdict, OnMeshes};
 pub use text::text;
 
 use self::on_meshes::is_over_meshes;
@@ -63,7 +63,7 @@ pub fn write(
 /// Writes the comparison of the meshes to a batch of files: as `convergence.json`, and as text for a reader.
 pub(crate) fn stage(plan: &Plan, results: &StudyResults, batch: &mut Batch) -> Result<OnMeshes, StudyError> {
     let [numbers, words] = CONVERGENCE;
-    let found = OnMeshes::of(plan, results)?;
+    let found = OnMeshes::new(plan, results)?;
     let text = text(plan, &found, COLUMNS);
     batch.write(numbers, |file| Ok(serde_json::to_writer_pretty(file, &found)?))?;
     batch.write(words, |file| file.write_all(text.as_bytes()))?;

@@ -55,13 +55,13 @@ pub struct Convergence {
     /// Half width of the interval of each mean, due to the scatter over surfaces; none for one seed.
     pub half_widths: Vec<Option<f64>>,
     /// Verdict on the means.
-    pub verdict: Verdict,
+    pub verdict: MeshVerdict,
 }
 
 /// Verdict on the differences between meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum MeshVerdict {
     /// Differences decrease.
     Converges {
         /// Order of convergence, 1/2 to 2.
@@ -78,7 +78,7 @@ pub enum Verdict {
     },
 }
 
-impl Verdict {
+impl MeshVerdict {
     /// The verdict on the values of at least three meshes, the finest last.
     ///
     /// # Panics
@@ -126,7 +126,7 @@ fn convergences(plan: &Plan, results: &StudyResults) -> Vec<Convergence> {
         let samples = (0..plan.points.len()).map(|position| results.sample(plan, position, name));
         let samples: Vec<Sample> = samples.collect::<Option<_>>()?;
         let means: Vec<f64> = samples.iter().map(|sample| sample.mean).collect();
-        let verdict = Verdict::on(&means);
+        let verdict = MeshVerdict::on(&means);
         Some(Convergence {
             quantity: (*name).to_owned(),
             means,
@@ -143,9 +143,9 @@ impl Convergence {
     pub(crate) fn result(&self) -> Option<[f64; 2]> {
         let (mean, half) = (*self.means.last()?, self.half_widths.last()?.unwrap_or(0.0));
         match self.verdict {
-            Verdict::Converges { mesh_error, .. } => Some([mean, mesh_error + half]),
-            Verdict::Open { spread } if spread <= half => Some([mean, spread + half]),
-            Verdict::Equal | Verdict::Open { .. } => None,
+            MeshVerdict::Converges { mesh_error, .. } => Some([mean, mesh_error + half]),
+            MeshVerdict::Open { spread } if spread <= half => Some([mean, spread + half]),
+            MeshVerdict::Equal | MeshVerdict::Open { .. } => None,
         }
     }
 }
@@ -167,7 +167,7 @@ impl OnMeshes {
     ///
     /// # Errors
     /// When the case is no longer valid.
-    pub(crate) fn of(plan: &Plan, results: &StudyResults) -> Result<Self, CaseError> {
+    pub(crate) fn new(plan: &Plan, results: &StudyResults) -> Result<Self, CaseError> {
         let of_a_block = plan.first_case_file()?.lengths_of_a_block();
         Ok(Self {
             meshes: meshes(plan),
@@ -205,10 +205,10 @@ mod tests {
     fn the_error_bounds_the_distance_to_the_limit() {
         for order in [0.5, 1.0, 1.5, 2.0, 3.0] {
             let values: Vec<f64> = (0..4).map(|k| 20.0 + libm::exp2(-order * f64::from(k))).collect();
-            let Verdict::Converges {
+            let MeshVerdict::Converges {
                 order: found,
                 mesh_error,
-            } = Verdict::on(&values)
+            } = MeshVerdict::on(&values)
             else {
                 panic!("order {order}");
             };
@@ -220,16 +220,19 @@ mod tests {
             );
         }
         // A small last difference is not trusted: the next mesh of this sequence gave 16.774.
-        let lucky = Verdict::on(&[15.5136, 16.7511, 16.7599]);
-        let Verdict::Converges { mesh_error, .. } = lucky else {
+        let lucky = MeshVerdict::on(&[15.5136, 16.7511, 16.7599]);
+        let MeshVerdict::Converges { mesh_error, .. } = lucky else {
             panic!("{lucky:?}");
         };
         assert!((mesh_error - 1.2375 / 12.0).abs() < 1e-12);
-        assert_eq!(Verdict::on(&[1.0, 2.0, 3.0]), Verdict::Open { spread: 2.0 });
-        assert_eq!(Verdict::on(&[9.0, 1.0, 1.0, 1.0]), Verdict::Equal);
+        assert_eq!(
+            MeshVerdict::on(&[1.0, 2.0, 3.0]),
+            MeshVerdict::Open { spread: 2.0 }
+        );
+        assert_eq!(MeshVerdict::on(&[9.0, 1.0, 1.0, 1.0]), MeshVerdict::Equal);
         // Convergence of an order below 1/2 is treated as order 1/2.
-        let slow = Verdict::on(&[0.0, 1.0, 1.9]);
-        let Verdict::Converges { order, mesh_error } = slow else {
+        let slow = MeshVerdict::on(&[0.0, 1.0, 1.9]);
+        let MeshVerdict::Converges { order, mesh_error } = slow else {
             panic!("{slow:?}");
         };
         assert_eq!(order, 0.5);

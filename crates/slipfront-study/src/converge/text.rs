@@ -3,7 +3,7 @@
 use slipfront_base::number_format::{four_digits, with_half_width};
 use slipfront_base::text::note;
 
-use super::on_meshes::{Convergence, OnMeshes, Verdict};
+use super::on_meshes::{Convergence, MeshVerdict, OnMeshes};
 use crate::plan::Plan;
 use crate::text_table::table;
 use crate::warning_texts::warning_texts;
@@ -74,19 +74,19 @@ fn sentence(one: &Convergence) -> String {
         format!(", scatter between surfaces {}", two_digits(half))
     });
     match one.verdict {
-        Verdict::Converges { order, mesh_error } => format!(
+        MeshVerdict::Converges { order, mesh_error } => format!(
             "{name}: {} (discretisation {}{of_surfaces}; order {order:.1})",
             with_error(value, mesh_error + half),
             two_digits(mesh_error)
         ),
-        Verdict::Equal => format!("{name}: {} on every mesh{of_surfaces}", four_digits(value)),
+        MeshVerdict::Equal => format!("{name}: {} on every mesh{of_surfaces}", four_digits(value)),
         // The scatter over seeds hides the effect of the mesh.
-        Verdict::Open { spread } if spread <= half => format!(
+        MeshVerdict::Open { spread } if spread <= half => format!(
             "{name}: {}; the last three meshes differ by {}, within the scatter between surfaces: use more --replicates",
             with_error(value, spread + half),
             two_digits(spread)
         ),
-        Verdict::Open { spread } => format!(
+        MeshVerdict::Open { spread } => format!(
             "{name}: {} on the finest mesh; no limit is given, because differences do not decrease: the last three meshes differ by {}",
             four_digits(value),
             two_digits(spread)

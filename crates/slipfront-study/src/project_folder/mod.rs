@@ -28,4 +28,4 @@ pub(crate) use line::to_line;
 pub use notes::notes_of_use;
 pub use read_numbers::read_numbers;
 pub use result_files::{Batch, Others, ResultFiles};
-pub use verify::{Derivation, Extent, FindAgain, VerifyStudyError, verify_checksums, verify_complete};
+pub use verify::{Extent, FindAgain, Project, VerifyBeside, verify_complete};

@@ -29,7 +29,7 @@ use crate::shard::Shard;
 pub struct ResultFiles {
     folder: PathBuf,
     /// Content of the folder, such as `study`.
-    of: &'static str,
+    content: &'static str,
     /// Part of the points of a study that the folder is for.
     part: Option<String>,
     /// Whether edited files are replaced.
@@ -43,12 +43,12 @@ pub struct ResultFiles {
 }
 
 impl ResultFiles {
-    /// The result files of a folder. `of` names the content, such as `study`; `force` allows the replacement
-    /// of edited files, but not of files that slipfront has not written.
-    pub fn new(folder: &Path, of: &'static str, force: bool) -> Self {
+    /// The result files of a folder. `content` names it, such as `study`; `force` allows the replacement of
+    /// edited files, but not of files that slipfront has not written.
+    pub fn new(folder: &Path, content: &'static str, force: bool) -> Self {
         Self {
             folder: folder.to_owned(),
-            of,
+            content,
             part: None,
             force,
             given: Vec::new(),
@@ -102,17 +102,26 @@ impl ResultFiles {
 
     /// Whether a name is free, or its file equals one of the list or the new file.
     fn is_own(&self, name: &str, list: &Checksums, new: Option<&ManifestFile>) -> Result<bool, StudyError> {
-        let path = self.folder.join(name);
-        // A link in place of a folder leads to foreign files.
-        for above in path.ancestors().skip(1).take_while(|above| *above != self.folder) {
-            let found = found_at(above).map_err(FolderError::read(above))?;
-            if found.is_some_and(|found| !found.is_dir()) {
-                return Ok(false);
-            }
+        if self.in_place_of_folder(name)?.is_some() {
+            return Ok(false);
         }
+        let path = self.folder.join(name);
         let known = list.files.iter().chain(&list.replaced).chain(new);
         let is_known = is_one_of(&self.folder, name, known).map_err(FolderError::read(&path))?;
         Ok(is_known.unwrap_or(true))
+    }
+
+    /// A link or a file in place of a parent folder of the file of this name: it may lead out of the results
+    /// folder, to foreign files.
+    fn in_place_of_folder(&self, name: &str) -> Result<Option<PathBuf>, StudyError> {
+        let path = self.folder.join(name);
+        for above in path.ancestors().skip(1).take_while(|above| *above != self.folder) {
+            let found = found_at(above).map_err(FolderError::read(above))?;
+            if found.is_some_and(|found| !found.is_dir()) {
+                return Ok(Some(above.to_owned()));
+            }
+        }
+        Ok(None)
     }
 
     /// Whether this file is there already.
@@ -166,7 +175,7 @@ impl ResultFiles {
             return Ok(());
         }
         Err(StudyError::Edited {
-            of: self.of,
+            of: self.content,
             path: self.folder.clone(),
             names,
         })
@@ -203,22 +212,21 @@ impl Batch {
         name: &str,
         fill: impl FnOnce(&mut File) -> std::io::Result<()>,
     ) -> Result<(), StudyError> {
+        if let Some(path) = self.files.in_place_of_folder(name)? {
+            return Err(FolderError::Foreign { path }.into());
+        }
         let path = self.files.folder.join(name);
-        let staged = self.expect_folder(name).and_then(|()| {
-            let stage = || {
-                make_folders(folder_of(&path))?;
-                // There may be too many files to keep them open. The caller has locked the folder against
-                // other processes.
-                let file = write_beside(&path, fill)?.into_temp_path();
-                let listed = ManifestFile::of_copy(name, &file)?;
-                Ok((file, listed))
-            };
-            stage().map_err(|source| StudyError::Write {
-                path: path.clone(),
-                source,
-            })
-        })?;
-        self.staged.push(staged);
+        let stage = || {
+            make_folders(folder_of(&path))?;
+            // There may be too many files to keep them open. The caller has locked the folder against other
+            // processes.
+            let file = write_beside(&path, fill)?.into_temp_path();
+            let listed = ManifestFile::read_copy(name, &file)?;
+            Ok((file, listed))
+        };
+        let staged = stage();
+        self.staged
+            .push(staged.map_err(|source| StudyError::Write { path, source })?);
         Ok(())
     }
 
@@ -277,21 +285,6 @@ impl Batch {
             }
             let mut original = open_regular(original).map_err(FolderError::read(original))?;
             self.write(name, |to| std::io::copy(&mut original, to).map(drop))?;
-        }
-        Ok(())
-    }
-
-    /// Refuses a link or a file in place of a parent folder of the file: it may lead out of the results
-    /// folder.
-    fn expect_folder(&self, name: &str) -> Result<(), StudyError> {
-        let folder = &self.files.folder;
-        let path = folder.join(name);
-        for above in path.ancestors().skip(1).take_while(|above| above != folder) {
-            let found = found_at(above).map_err(FolderError::read(above))?;
-            if found.is_some_and(|found| !found.is_dir()) {
-                let path = above.to_owned();
-                return Err(FolderError::Foreign { path }.into());
-            }
         }
         Ok(())
     }
@@ -393,7 +386,7 @@ impl Batch {
             None => (false, Vec::new()),
         };
         let mut list = Checksums {
-            of: files.of.to_owned(),
+            of: files.content.to_owned(),
             part: files.part.clone(),
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),

@@ -1,7 +1,7 @@
 //! Compares the folder of a project with the list of its files, and then with the results of its recorded
 //! runs.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use slipfront_base::disk::{TEXT_MAX_BYTES, found_at, open_limited};
@@ -12,36 +12,11 @@ use slipfront_plot::PictureLook;
 use slipfront_run::folder_error::FolderError;
 use slipfront_run::manifest::ManifestFile;
 use slipfront_run::program;
-use slipfront_run::verify::{Verdict, VerifyError, description_in, differences, unlisted_files};
-use thiserror::Error;
+use slipfront_run::verify::{FolderCheck, VerifyError, description_in, differences, unlisted_files};
 
 use super::checksums::{CHECKSUMS, Checksums};
 use super::kind::ProjectKind;
-use crate::error::{StudyError, of_others};
-
-/// The folder of a study that cannot be verified.
-#[derive(Debug, Error)]
-#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
-pub enum VerifyStudyError {
-    #[error(
-        "the study in {path} lacks {}{}: finish it first, or merge it with its other shards",
-        count(*runs, "run"),
-        of_others(*others)
-    )]
-    Unfinished {
-        path: PathBuf,
-        runs: usize,
-        others: usize,
-    },
-    #[error("the {what} in {path} is not finished: run it again to resume it first")]
-    UnfinishedSearch { what: &'static str, path: PathBuf },
-    #[error(transparent)]
-    Study(#[from] StudyError),
-    #[error(transparent)]
-    Run(#[from] VerifyError),
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-}
+use crate::error::StudyError;
 
 /// Extent of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,19 +32,28 @@ pub enum Extent {
 pub type FindAgain =
     fn(folder: &Path, other: &Path, look: &PictureLook, stop: &AtomicBool) -> Result<[usize; 2], StudyError>;
 
-/// A kind of project with results that follow from the runs in the journal.
+/// Compares what a folder has beside the files in its list, such as folders of runs; returns the end of the
+/// sentence of the check.
+pub type VerifyBeside =
+    fn(folder: &Path, check: &mut FolderCheck, stop: &AtomicBool) -> Result<String, StudyError>;
+
+/// A kind of project, and what can be done with its folders.
 #[derive(Debug)]
-pub struct Derivation {
+pub struct Project {
     /// The kind.
     pub kind: &'static ProjectKind,
     /// Names, without their ending, of images in the folder that are not pictures of results.
     pub no_pictures: &'static [&'static str],
-    /// The function that derives the results of such a folder again.
-    pub find_again: FindAgain,
+    /// Entries of the folder that are not in its list, and the function that compares them.
+    pub beside: &'static [&'static str],
+    /// The function that compares these entries with the journal.
+    pub verify_beside: Option<VerifyBeside>,
+    /// The function that derives the results of such a folder again; none for the figures of the paper.
+    pub find_again: Option<FindAgain>,
 }
 
-impl Derivation {
-    /// Derives the results of a folder again in another one.
+impl Project {
+    /// Derives the results of a folder again in another one; returns the numbers of runs before and after.
     ///
     /// # Errors
     /// When runs are missing that cannot be made again, results cannot be derived, or the system refuses to
@@ -80,30 +64,47 @@ impl Derivation {
         other: &Path,
         look: &PictureLook,
         stop: &AtomicBool,
-    ) -> Result<[usize; 2], VerifyStudyError> {
-        (self.find_again)(folder, other, look, stop).map_err(|error| match error {
-            StudyError::Missing { runs, others } => VerifyStudyError::Unfinished {
+    ) -> Result<[usize; 2], StudyError> {
+        let Some(find_again) = self.find_again else {
+            return Ok([0; 2]);
+        };
+        find_again(folder, other, look, stop).map_err(|error| match error {
+            StudyError::Missing { runs, others } => StudyError::LacksRuns {
                 path: folder.to_owned(),
                 runs,
                 others,
             },
-            error => error.into(),
+            error => error,
         })
+    }
+
+    /// Compares the entries of a folder that are not in its list.
+    pub(crate) fn verify_beside(
+        &self,
+        folder: &Path,
+        check: &mut FolderCheck,
+        stop: &AtomicBool,
+    ) -> Result<(), StudyError> {
+        if let Some(verify_beside) = self.verify_beside {
+            let found = verify_beside(folder, check, stop)?;
+            check.what += &found;
+        }
+        Ok(())
     }
 }
 
-/// Compares the files of a folder with its list, and notes entries that are neither in the list nor among the
-/// `others`; the results are complete if the second value is true.
+/// Compares the files of a folder with its list, and notes entries that are neither in the list nor `beside`
+/// it; the results are complete if the second value is true.
 ///
 /// # Errors
 /// When the system cannot list the folder.
-pub fn verify_checksums(
+pub(crate) fn verify_checksums(
     folder: &Path,
     kind: &ProjectKind,
-    others: &[&str],
+    beside: &[&str],
     stop: &AtomicBool,
-) -> Result<(Verdict, bool), StudyError> {
-    let mut verdict = Verdict::default();
+) -> Result<(FolderCheck, bool), StudyError> {
+    let mut check = FolderCheck::default();
     for (name, remedy) in [
         (CHECKSUMS, "with this folder as --out"),
         (kind.file, "with this folder as --out"),
@@ -111,7 +112,7 @@ pub fn verify_checksums(
     ] {
         let path = folder.join(name);
         if found_at(&path).map_err(FolderError::read(&path))?.is_none() {
-            verdict.differences.push(single_line(&format!(
+            check.differences.push(single_line(&format!(
                 "{} is missing in the folder of a {}: put it back, or run `slipfront {}` again {remedy}",
                 path.display(),
                 kind.name,
@@ -122,12 +123,12 @@ pub fn verify_checksums(
     let path = folder.join(CHECKSUMS);
     let list = match Checksums::read(folder) {
         Ok(Some(list)) => list,
-        Ok(None) => return Ok((verdict, false)),
+        Ok(None) => return Ok((check, false)),
         Err(StudyError::Checksums { why, .. }) => {
-            verdict
+            check
                 .differences
                 .push(format!("{} is damaged: {why}", path.display()));
-            return Ok((verdict, false));
+            return Ok((check, false));
         }
         Err(error) => return Err(error),
     };
@@ -136,14 +137,14 @@ pub fn verify_checksums(
         let length = std::fs::metadata(folder.join(&file.name)).map_or(0, |found| found.len());
         file.name == kind.journal
             && length > file.bytes
-            && ManifestFile::of_beginning(folder, &file.name, file.bytes, stop)
+            && ManifestFile::read_beginning(folder, &file.name, file.bytes, stop)
                 .is_ok_and(|found| found == **file)
     };
     let (grown, sources): (Vec<_>, Vec<_>) = list.sources.iter().partition(has_grown);
     let is_key = |file: &&ManifestFile| file.name == kind.file || file.name == kind.journal;
     let is_told = |file: &&ManifestFile| is_key(file) && !folder.join(&file.name).exists();
     let compared = list.files.iter().chain(sources).filter(|file| !is_told(file));
-    verdict
+    check
         .differences
         .extend(differences(compared, folder, "were written", stop));
     if !list.replaced.is_empty() {
@@ -151,10 +152,10 @@ pub fn verify_checksums(
             "{}: the results were not completely written; run the command of this folder again to complete them",
             path.display()
         );
-        verdict.differences.push(sentence);
+        check.differences.push(sentence);
     }
     let by = program::in_words(&list.version, list.revision.as_deref());
-    verdict.what = format!(
+    check.what = format!(
         "{} unchanged since {by} wrote them",
         count(list.files.len(), "file")
     );
@@ -164,13 +165,13 @@ pub fn verify_checksums(
     let known = known
         .chain([CHECKSUMS, kind.journal])
         .chain(described)
-        .chain(others.iter().copied());
-    verdict.notes = unlisted_files(folder, &known.collect(), is_left);
-    verdict.notes.extend(outdated);
-    Ok((verdict, list.is_complete && grown.is_empty()))
+        .chain(beside.iter().copied());
+    check.notes = unlisted_files(folder, &known.collect(), is_left);
+    check.notes.extend(outdated);
+    Ok((check, list.is_complete && grown.is_empty()))
 }
 
-/// Compares the files of a folder with its list, as [`verify_checksums`] does, and refuses unfinished
+/// Compares the files of a folder with its list, as `verify_checksums` does, and refuses unfinished
 /// results.
 ///
 /// # Errors
@@ -179,56 +180,61 @@ pub fn verify_checksums(
 pub fn verify_complete(
     folder: &Path,
     kind: &ProjectKind,
-    others: &[&str],
+    beside: &[&str],
     stop: &AtomicBool,
-) -> Result<Verdict, VerifyStudyError> {
-    let (verdict, is_complete) = verify_checksums(folder, kind, others, stop)?;
-    if verdict.differences.is_empty() && !is_complete {
+) -> Result<FolderCheck, StudyError> {
+    let (check, is_complete) = verify_checksums(folder, kind, beside, stop)?;
+    if check.differences.is_empty() && !is_complete {
         let (what, path) = (kind.name, folder.to_owned());
-        return Err(VerifyStudyError::UnfinishedSearch { what, path });
+        return Err(StudyError::Unfinished { what, path });
     }
-    Ok(verdict)
+    Ok(check)
 }
 
 /// Compares the folder of a project with its list, then with the results that follow from the runs in its
 /// journal.
 pub(crate) fn verify_project(
     folder: &Path,
-    derivation: &Derivation,
-    others: &[&str],
+    project: &Project,
     extent: Extent,
     stop: &AtomicBool,
-) -> Result<Verdict, VerifyStudyError> {
-    let mut verdict = verify_complete(folder, derivation.kind, others, stop)?;
-    if extent == Extent::Derived && verdict.differences.is_empty() {
-        derive_from_runs(folder, derivation, &mut verdict, stop)?;
+) -> Result<FolderCheck, StudyError> {
+    let mut check = verify_complete(folder, project.kind, project.beside, stop)?;
+    if project.find_again.is_none() {
+        check.not_derived = Some(format!(
+            "the figures in {} were not drawn again: `slipfront verify` draws them",
+            folder.display()
+        ));
+    } else if extent == Extent::Derived && check.differences.is_empty() {
+        derive_from_runs(folder, project, &mut check, stop)?;
     }
-    Ok(verdict)
+    project.verify_beside(folder, &mut check, stop)?;
+    Ok(check)
 }
 
 /// Compares the folder of a project with results that are derived in another folder from the runs in its
 /// journal.
 fn derive_from_runs(
     folder: &Path,
-    derivation: &Derivation,
-    verdict: &mut Verdict,
+    project: &Project,
+    check: &mut FolderCheck,
     stop: &AtomicBool,
-) -> Result<(), VerifyStudyError> {
+) -> Result<(), StudyError> {
     let temporary = TemporaryFolder::new(folder).map_err(VerifyError::Temporary)?;
     // Opening a pipe would wait forever.
-    let file = folder.join(derivation.kind.file);
+    let file = folder.join(project.kind.file);
     open_limited(&file, TEXT_MAX_BYTES).map_err(FolderError::read(&file))?;
-    let [kept, all] = derivation.again(folder, temporary.path(), &PictureLook::default(), stop)?;
+    let [kept, all] = project.again(folder, temporary.path(), &PictureLook::default(), stop)?;
     if all > kept {
         let sentence = format!("{} not in the journal, and run again", are(all - kept, "run"));
-        verdict.notes.push(sentence);
+        check.notes.push(sentence);
     }
     let again = Checksums::read(temporary.path())?.unwrap_or_default();
-    verdict.differences = differences(&again.files, folder, "follow from its runs", stop);
-    verdict.what = format!(
+    check.differences = differences(&again.files, folder, "follow from its runs", stop);
+    check.what = format!(
         "{}, a {} as its {} give it",
-        verdict.what,
-        derivation.kind.name,
+        check.what,
+        project.kind.name,
         count(kept, "recorded run")
     );
     Ok(())

@@ -1,5 +1,6 @@
 //! Sliders under laws of friction with thresholds that change.
 
+use super::bisection::bisected;
 use crate::friction::{Ageing, RateAndState, Weakening};
 
 /// Growth rate of a small disturbance of steady sliding at `v`, for a block of mass 1 on a spring of
@@ -54,17 +55,7 @@ fn slip_time(law: &Ageing, stopped_at: f64, pull: f64, hold: f64, k: f64, v: f64
     while excess(high) < 0.0 {
         (low, high) = (high, hold + 2.0 * (high - hold));
     }
-    loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return high;
-        }
-        if excess(middle) < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    bisected([low, high], |t| excess(t) >= 0.0)
 }
 
 /// Stop of a block that slides steadily at `v` when its drive stops. With `w^2 = k - Omega^2/4` the block
@@ -154,16 +145,8 @@ pub fn rate_and_state_growth(law: &RateAndState, sigma: f64, v: f64, k: f64, dam
     let cubic = |s: f64| ((s + c2) * s + c1) * s + c0;
     // The polynomial is positive at 0 and negative far to the left. Bisection finds the root between; the
     // other two are roots of the quadratic quotient.
-    let (mut low, mut high) = (-1.0 - c2.abs().max(c1.abs()).max(c0), 0.0);
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if cubic(middle) > 0.0 {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    let root = 0.5 * (low + high);
+    let far = -1.0 - c2.abs().max(c1.abs()).max(c0);
+    let root = bisected([far, 0.0], |s| cubic(s) > 0.0);
     let (half, product) = (-0.5 * (c2 + root), c1 + root * (c2 + root));
     let discriminant = (half * half - product).max(0.0);
     root.max(half + discriminant.sqrt())

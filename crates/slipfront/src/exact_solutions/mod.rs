@@ -4,6 +4,7 @@
 //! `P mu_s l^2`). The chapters of slipfront-family and the tests in `tests/physics` compare the kernels with
 //! these solutions.
 
+mod bisection;
 mod edge_drive;
 mod friction;
 mod sliders;
@@ -15,6 +16,8 @@ pub use sliders::{
     PairMode, composite_peak, graded_first_slip_time_star, lagged_decay_rate, pair_modes, viscous_decay_rate,
 };
 pub use torsion::{torsion_first_slip, torsion_of_decoupled_blocks, torsion_of_decoupled_disc};
+
+use bisection::bisected;
 
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};
 use crate::scales::damping;
@@ -140,16 +143,7 @@ impl SlipCycle {
             rate.at(maximum) > v_star,
             "the block never catches up with the drive again"
         );
-        let (mut low, mut high) = (minimum, maximum);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if rate.at(middle) < v_star {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        cycle.slip_duration = 0.5 * (low + high);
+        cycle.slip_duration = bisected([minimum, maximum], |t| rate.at(t) >= v_star);
         cycle
     }
 

@@ -7,7 +7,7 @@ use chacha20::rand_core::{Rng, SeedableRng};
 
 use super::needs::Needs;
 use crate::dead_load::DeadLoad;
-use crate::forces::{Forces, part, part_mut};
+use crate::forces::{Forces, part, part_mut, values_of, values_of_mut};
 use crate::state::State;
 use crate::surface::Surface;
 use crate::vector_field::{VectorField, dot};
@@ -229,20 +229,14 @@ impl SpringContact {
         let ([ux, uy], [ax, ay]) = (part(&state.displacement, blocks), part(&self.anchor, blocks));
         let ([vx, vy], [dx, dy]) = (part(&state.velocity, blocks), part(&forces.drive, blocks));
         let [lx, ly] = part(&forces.lattice, blocks);
-        let (ux, uy, ax, ay, vx, vy) = (&ux[..n], &uy[..n], &ax[..n], &ay[..n], &vx[..n], &vy[..n]);
-        let (dx, dy, lx, ly) = (&dx[..n], &dy[..n], &lx[..n], &ly[..n]);
-        let (threshold, textured) = (
-            &threshold[blocks.clone()][..n],
-            &surface.textured[blocks.clone()][..n],
-        );
-        let (after_break, slid) = (&self.after_break[blocks.clone()][..n], self.law.slides());
-        let slid_before = &self.breaks[blocks.clone()][..n];
+        let (threshold, textured) = (values_of(threshold, blocks), values_of(&surface.textured, blocks));
+        let after_break = values_of(&self.after_break, blocks);
+        let (slid, slid_before) = (self.law.slides(), values_of(&self.breaks, blocks));
         let ([fx, fy], [wx, wy]) = (
             part_mut(&mut forces.friction, blocks),
             part_mut(&mut forces.velocity, blocks),
         );
-        let (fx, fy, wx, wy) = (&mut fx[..n], &mut fy[..n], &mut wx[..n], &mut wy[..n]);
-        let slides = &mut forces.slides[blocks.clone()][..n];
+        let slides = values_of_mut(&mut forces.slides, blocks);
         for k in 0..n {
             let stiffness = self.stiffness(textured[k]);
             let pull = [stiffness * (ux[k] - ax[k]), stiffness * (uy[k] - ay[k])];
@@ -279,16 +273,10 @@ impl SpringContact {
     ) {
         let n = blocks.len();
         let ([ux, uy], [ax, ay]) = (part(displacement, blocks), part(&self.anchor, blocks));
-        let (ux, uy, ax, ay) = (&ux[..n], &uy[..n], &ax[..n], &ay[..n]);
-        let (textured, slides) = (
-            &surface.textured[blocks.clone()][..n],
-            &slides[blocks.clone()][..n],
-        );
+        let (textured, slides) = (values_of(&surface.textured, blocks), values_of(slides, blocks));
         let (of_held, of_broken) = (&mut of_held[..n], &mut of_broken[..n]);
-        let (after_break, slid_before) = (
-            &self.after_break[blocks.clone()][..n],
-            &self.breaks[blocks.clone()][..n],
-        );
+        let after_break = values_of(&self.after_break, blocks);
+        let slid_before = values_of(&self.breaks, blocks);
         let half_compliance = 0.5 / self.law.stiffness;
         for k in 0..n {
             let extension = [ux[k] - ax[k], uy[k] - ay[k]];

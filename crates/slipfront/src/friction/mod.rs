@@ -121,31 +121,34 @@ impl Friction {
 
     /// Mean friction of all blocks in steady sliding at `speed`, in units of `P mu_s l^2`.
     pub(crate) fn steady_force(&self, surface: &Surface, speed: f64) -> f64 {
-        match self {
-            Self::Coulomb(law) => {
-                let (at_rest, adhesion) = (surface.mean_kinetic_force(), surface.mean_kinetic_adhesion());
-                law.steady_force(at_rest, adhesion, speed)
-            }
-            Self::RateAndState(law) => surface.mean_normal_force() * law.steady_coefficient(speed),
-            Self::ContactSprings(law) => {
-                law.steady_force(surface.mean_static_force(), surface.mean_kinetic_force())
-            }
-        }
+        let limits = [surface.mean_static_force(), surface.mean_kinetic_force()];
+        let adhesion = surface.mean_kinetic_adhesion();
+        self.steady_force_under(surface.mean_normal_force(), limits, adhesion, speed)
     }
 
     /// Friction of block `b` in steady sliding at `speed`, in units of `P mu_s l^2`.
     pub(crate) fn steady_force_of(&self, surface: &Surface, b: usize, speed: f64) -> f64 {
+        let limits = [surface.static_limit(b), surface.kinetic_force(b)];
+        let adhesion = if surface.textured[b] {
+            0.0
+        } else {
+            surface.adhesion().of_kinetic
+        };
+        self.steady_force_under(surface.normal_force(b), limits, adhesion, speed)
+    }
+
+    /// Friction in steady sliding under a normal force, from static and kinetic friction and its adhesion.
+    fn steady_force_under(
+        &self,
+        normal_force: f64,
+        [of_static, of_kinetic]: [f64; 2],
+        adhesion: f64,
+        speed: f64,
+    ) -> f64 {
         match self {
-            Self::Coulomb(law) => {
-                let adhesion = if surface.textured[b] {
-                    0.0
-                } else {
-                    surface.adhesion().of_kinetic
-                };
-                law.steady_force(surface.kinetic_force(b), adhesion, speed)
-            }
-            Self::RateAndState(law) => surface.normal_force(b) * law.steady_coefficient(speed),
-            Self::ContactSprings(law) => law.steady_force(surface.static_limit(b), surface.kinetic_force(b)),
+            Self::Coulomb(law) => law.steady_force(of_kinetic, adhesion, speed),
+            Self::RateAndState(law) => normal_force * law.steady_coefficient(speed),
+            Self::ContactSprings(law) => law.steady_force(of_static, of_kinetic),
         }
     }
 
@@ -185,7 +188,7 @@ pub struct ContactTotals {
 
 impl ContactTotals {
     /// Totals from the sums of [`BandContact::add_up`].
-    pub(crate) fn of(
+    pub(crate) fn from_sums(
         [spring_energy, broken_energy, third]: [f64; 3],
         friction: &Friction,
         surface: &Surface,

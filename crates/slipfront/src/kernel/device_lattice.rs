@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use slipfront_kernel::{SeriesNumbers, Springs};
+use slipfront_kernel::{Springs, series_coefficients};
 
 use super::engine::Engine;
 use super::fused::{Fused, blocks_differ, largest_factors};
@@ -14,7 +14,7 @@ use crate::device::{
     CpuOnly, DeviceLattice, EnergySteps, Equations, FallingStrength, Motion, NEVER, SlidingCounts,
     StepRecord, flag,
 };
-use crate::lattice::Bond;
+use crate::lattice::{Bond, K_DIAGONAL, K_STRAIGHT};
 use crate::model::Model;
 use crate::position_bins::PositionBins;
 use crate::state::State;
@@ -68,7 +68,6 @@ impl DeviceLattice {
         Self::check(&model)?;
         let (surface, slider, n) = (&model.surface, &model.slider, lattice.n_blocks());
         let integrator = Integrator::new(model.damping, dt_star);
-        let series = SeriesNumbers::new(model.epsilon, model.springs);
         let law = model.friction.strength_over_slip();
         let drops = (0..n).map(|b| (surface.static_limit(b) - surface.kinetic_force(b)).max(0.0));
         let impulse = |force: f64| integrator.force_to_velocity * force;
@@ -88,8 +87,8 @@ impl DeviceLattice {
                 velocity_decay: integrator.velocity_decay,
                 force_to_velocity: integrator.force_to_velocity,
                 velocity_to_force: integrator.velocity_to_force,
-                stiffness: [model.springs.straight, model.springs.diagonal],
-                series: series.coefficients,
+                stiffness: [K_STRAIGHT, K_DIAGONAL],
+                series: series_coefficients(model.epsilon),
                 strain_limits: Springs::strain_limits(),
                 n_blocks: slider.sum_of_drive_springs(lattice),
                 fall_length: law.map_or(-1.0, |law| law.length),
@@ -179,16 +178,17 @@ impl DeviceLattice {
     pub(crate) fn take_state(&mut self, kernel: &Fused, latest: &Clock, next: &Clock) {
         self.steps_done = next.step;
         self.motion = kernel.motion_of_device(&self.model, latest, next);
-        self.state = kernel.state();
+        self.state = kernel.state(self.model.surface.n_blocks());
+        let time_star = latest.time_star();
         let of_law = self
             .strength
             .iter_mut()
             .flat_map(|strength| &mut strength.columns);
-        for (column, values) in of_law.enumerate() {
-            kernel.read_memory(latest.time_star(), column, 0, values);
+        for (number, values) in of_law.enumerate() {
+            kernel.read_column(time_star, BlockColumn::Memory(number), 0, values);
         }
         let mut times_star = vec![0.0; self.first_slips.len()];
-        kernel.read_column(BlockColumn::FirstSlip, 0, &mut times_star);
+        kernel.read_column(time_star, BlockColumn::FirstSlip, 0, &mut times_star);
         for (step, time_star) in self.first_slips.iter_mut().zip(times_star) {
             *step = if time_star.is_nan() {
                 NEVER
@@ -209,29 +209,26 @@ impl DeviceLattice {
     /// Reads a column of a checkpoint for the blocks from `first` on.
     pub(crate) fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
         let State {
-            displacement: u,
-            velocity: v,
+            displacement,
+            velocity,
         } = &self.state;
         let from = match column {
-            BlockColumn::DisplacementX => &u.x,
-            BlockColumn::DisplacementY => &u.y,
-            BlockColumn::VelocityX => &v.x,
-            BlockColumn::VelocityY => &v.y,
+            BlockColumn::DisplacementX => &displacement.x,
+            BlockColumn::DisplacementY => &displacement.y,
+            BlockColumn::VelocityX => &velocity.x,
+            BlockColumn::VelocityY => &velocity.y,
             BlockColumn::FirstSlip => {
                 for (b, time_star) in (first..).zip(values) {
                     *time_star = self.first_slip_time_star(b);
                 }
                 return;
             }
+            BlockColumn::Memory(number) => match &self.strength {
+                Some(strength) => &strength.columns[number],
+                None => return,
+            },
         };
         values.copy_from_slice(&from[first..first + values.len()]);
-    }
-
-    /// Reads a column of the memory of the law of friction for the blocks from `first` on.
-    pub(crate) fn read_memory(&self, column: usize, first: usize, values: &mut [f64]) {
-        if let Some(strength) = &self.strength {
-            values.copy_from_slice(&strength.columns[column][first..first + values.len()]);
-        }
     }
 
     /// Lets a device count the sliding blocks at a step and at others as far apart: at the multiples of the

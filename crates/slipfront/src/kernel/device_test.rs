@@ -63,7 +63,7 @@ fn begun(size: usize, epsilon: f64, friction: Friction) -> DeviceLattice {
     let surface = Surface::new(coefficients, textured, Load::Redistributed, 1.0);
     let surface = surface.expect("most blocks are in contact");
     let drive = Drive::at_angle(0.5, 20.0);
-    let bins = PositionBins::of(&lattice, &drive);
+    let bins = PositionBins::new(&lattice, &drive);
     let model = Model::new(lattice, surface, drive, 0.1, epsilon, friction);
     let energies = EnergySteps { every: 5, last: 0 };
     let begun = DeviceLattice::new(model, DT_STAR, None, energies);

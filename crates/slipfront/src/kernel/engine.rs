@@ -11,7 +11,7 @@ use crate::position_bins::PositionBins;
 use crate::state::State;
 use crate::totals::Totals;
 use slipfront_kernel::MotionBounds;
-use slipfront_kernel::fixed_point::RunningSum;
+use slipfront_kernel::fixed_point::{PART, sums_by_parts};
 
 /// Receives consecutive blocks: the first, whether each slides, and their velocities half a step later.
 pub(crate) type TakeSliding<'a> = &'a mut dyn FnMut(usize, &[bool], [&[f64]; 2]);
@@ -48,10 +48,18 @@ pub(crate) trait Engine: Send + Sync {
     fn motion(&self, b: usize) -> [[f64; 2]; 2];
 
     /// Displacements now and velocities half a step later of all blocks.
-    fn state(&self) -> State;
+    fn state(&self, n_blocks: usize) -> State {
+        let mut state = State::at_rest(n_blocks);
+        for b in 0..n_blocks {
+            let [u, v] = self.motion(b);
+            [state.displacement.x[b], state.displacement.y[b]] = u;
+            [state.velocity.x[b], state.velocity.y[b]] = v;
+        }
+        state
+    }
 
-    /// Reads a column of a checkpoint for the blocks from `first` on.
-    fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]);
+    /// Reads a column of a checkpoint for the blocks from `first` on, at the present t*.
+    fn read_column(&self, time_star: f64, column: BlockColumn, first: usize, values: &mut [f64]);
 
     /// First-slip times of all blocks. Consumes the kernel, and frees its state before the times are
     /// allocated.
@@ -79,42 +87,28 @@ pub(crate) trait Engine: Send + Sync {
         ContactTotals::default()
     }
 
-    /// Reads one of the [`Model::n_memory_columns`] for the blocks from `first` on, at the present t*.
-    /// `column` counts from 0.
-    fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]);
-
     /// Energy dissipated by the fall of strength since the start, a part of the friction loss: for each block
     /// the integral of `f - K` over its slip; 0 where strength does not fall. All ranks must call this
     /// together.
     fn weakening_energy(&self, model: &Model, time_star: f64, ranks: &dyn Communicator) -> f64 {
-        // As in other sums over columns: few enough blocks at once for the stack.
-        const PART: usize = 1 << 10;
         let Some(law) = model.friction.strength_over_slip() else {
             return 0.0;
         };
         let surface = &model.surface;
-        let (mut energies, mut lost_before) = ([0.0; PART], [0.0; PART]);
-        let mut sum = [RunningSum::default()];
-        loop {
-            for first in (0..surface.n_blocks()).step_by(PART) {
-                let energies = &mut energies[..PART.min(surface.n_blocks() - first)];
-                self.read_memory(time_star, 0, first, energies);
-                if law.healing_time.is_some() {
-                    let lost_before = &mut lost_before[..energies.len()];
-                    self.read_memory(time_star, 2, first, lost_before);
-                }
-                // Replaces slips by energies.
-                for (k, energy) in energies.iter_mut().enumerate() {
-                    let block = first + k;
-                    let drop = (surface.static_limit(block) - surface.kinetic_force(block)).max(0.0);
-                    *energy = law.energy(drop, *energy, lost_before[k]);
-                }
-                sum[0].add(energies);
+        let mut lost_before = [0.0; PART];
+        let [energy] = sums_by_parts(ranks, surface.n_blocks(), |_, first, energies| {
+            let lost_before = &mut lost_before[..energies.len()];
+            self.read_column(time_star, BlockColumn::Memory(0), first, energies);
+            if law.healing_time.is_some() {
+                self.read_column(time_star, BlockColumn::Memory(2), first, lost_before);
             }
-            if let Some([energy]) = RunningSum::finish(ranks, &mut sum) {
-                return energy;
+            // Replaces slips by energies.
+            for (b, (energy, lost_before)) in (first..).zip(energies.iter_mut().zip(lost_before)) {
+                let drop = (surface.static_limit(b) - surface.kinetic_force(b)).max(0.0);
+                *energy = law.energy(drop, *energy, *lost_before);
             }
-        }
+        });
+        energy
     }
 
     /// The lattice that a device computes, if the kernel replays its steps.

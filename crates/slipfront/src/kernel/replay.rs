@@ -397,17 +397,22 @@ impl Engine for Replay {
         [displacement.at(b), velocity.at(b)]
     }
 
-    fn state(&self) -> State {
-        self.kernel().state()
+    fn state(&self, n_blocks: usize) -> State {
+        self.kernel().state(n_blocks)
     }
 
-    fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
-        if column != BlockColumn::FirstSlip || self.on_cpu().is_some() {
-            return self.kernel().read_column(column, first, values);
-        }
-        self.lattice.read_column(column, first, values);
-        for time_star in values {
-            *time_star = self.if_past(*time_star);
+    fn read_column(&self, time_star: f64, column: BlockColumn, first: usize, values: &mut [f64]) {
+        match column {
+            BlockColumn::FirstSlip if self.on_cpu().is_none() => {
+                self.lattice.read_column(column, first, values);
+                for time_star in values {
+                    *time_star = self.if_past(*time_star);
+                }
+            }
+            BlockColumn::Memory(_) if self.on_cpu().is_none() => {
+                self.here().read_column(column, first, values);
+            }
+            _ => self.kernel().read_column(time_star, column, first, values),
         }
     }
 
@@ -430,13 +435,6 @@ impl Engine for Replay {
 
     fn motion_bounds(&self) -> Option<MotionBounds> {
         self.kernel().motion_bounds()
-    }
-
-    fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]) {
-        match self.on_cpu() {
-            Some(_) => self.kernel().read_memory(time_star, column, first, values),
-            None => self.here().read_memory(column, first, values),
-        }
     }
 
     fn weakening_energy(&self, model: &Model, time_star: f64, ranks: &dyn Communicator) -> f64 {

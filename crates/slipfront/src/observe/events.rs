@@ -141,10 +141,9 @@ impl Events {
             after: None,
         });
         let first = self.follow(now);
-        // The least index over all ranks is minus the largest negative index.
-        let mut least = [first.map_or(f64::NEG_INFINITY, |b| -((first_block(now) + b) as f64))];
-        now.communicator.largest(&mut least);
-        let (i, j) = now.model.lattice.column_row(-least[0] as usize);
+        let first = first.map_or(f64::INFINITY, |b| (now.model.first_block() + b) as f64);
+        let first = now.communicator.least_of(first);
+        let (i, j) = now.model.lattice.column_row(first as usize);
         if let Some(event) = self.events.last_mut() {
             event.nucleation = [i, j].map(|index| index as u32);
         }
@@ -191,9 +190,8 @@ impl Events {
             });
         }
         if may_be_faster {
-            let mut speed = [square.sqrt()];
-            now.communicator.largest(&mut speed);
-            event.speed_max = event.speed_max.max(speed[0]);
+            let speed = now.communicator.largest_of(square.sqrt());
+            event.speed_max = event.speed_max.max(speed);
         }
         first
     }
@@ -210,18 +208,14 @@ impl Events {
             }
         };
         let moment = sum_over(now.communicator, paths.len(), slip);
-        let mut blocks = [paths.iter().filter(|path| !path.is_nan()).count() as i64];
-        now.communicator.sum(&mut blocks);
+        let blocks = now
+            .communicator
+            .sum_of(paths.iter().filter(|path| !path.is_nan()).count());
         if let Some(event) = self.events.last_mut() {
-            (event.moment, event.blocks) = (moment, blocks[0] as usize);
+            (event.moment, event.blocks) = (moment, blocks);
             event.after = (!self.slides).then_some((now.time_star, now.point.mu_star));
         }
     }
-}
-
-/// Index in the whole lattice of the first block of this rank.
-fn first_block(now: &Snapshot) -> usize {
-    now.model.lattice.blocks_of(&now.model.rows).start
 }
 
 /// Displacement along the drive of block `b` of this rank.
@@ -229,7 +223,7 @@ fn path_of(now: &Snapshot, b: usize) -> f64 {
     let direction = now
         .model
         .drive
-        .direction_at(&now.model.lattice, first_block(now) + b);
+        .direction_at(&now.model.lattice, now.model.first_block() + b);
     dot(now.engine.motion(b)[0], direction)
 }
 

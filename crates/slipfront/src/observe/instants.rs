@@ -8,8 +8,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::frames::{Frame, Selection};
+use super::kinetic_friction::KineticStart;
 use super::observer::Observer;
-use super::summary::KineticStart;
 use crate::error::RunError;
 use crate::model::ONSET_PATH;
 use crate::snapshot::Snapshot;

@@ -87,7 +87,7 @@ impl Kymograph {
         while samples.div_ceil(samples_per_row) > Self::MAX_ROWS as u64 {
             samples_per_row *= 2;
         }
-        let bins = PositionBins::of(&model.lattice, &model.drive).count;
+        let bins = PositionBins::new(&model.lattice, &model.drive).count;
         let rows = samples.div_ceil(samples_per_row);
         let has_lengths = (self.samples, self.samples_per_row) == (samples, samples_per_row)
             && self.in_contact.len() == bins
@@ -118,7 +118,7 @@ impl Kymograph {
 
 impl Observer for Kymograph {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
-        let bins = PositionBins::of(&now.model.lattice, &now.model.drive);
+        let bins = PositionBins::new(&now.model.lattice, &now.model.drive);
         if self.samples == 0 {
             self.in_contact = blocks_in_contact(now, &bins);
         }
@@ -151,13 +151,9 @@ impl Observer for Kymograph {
 }
 
 fn blocks_in_contact(now: &Snapshot, bins: &PositionBins) -> Vec<i64> {
-    let (lattice, first) = (
-        &now.model.lattice,
-        now.model.lattice.blocks_of(&now.model.rows).start,
-    );
     let mut counts = vec![0; bins.count];
-    for (b, textured) in (first..).zip(&now.model.surface.textured) {
-        let (i, j) = lattice.column_row(b);
+    for (b, textured) in (now.model.first_block()..).zip(&now.model.surface.textured) {
+        let (i, j) = now.model.lattice.column_row(b);
         counts[bins.bin(i, j)] += i64::from(!textured);
     }
     now.communicator.sum(&mut counts);

@@ -1,6 +1,6 @@
 //! Measurements on a run. Observers read [`Snapshot`](crate::Snapshot)s and change nothing.
 //!
-//! [`curve`]: mu*, N* and energies against time; [`summary`]: the kinetic friction coefficient; [`frames`]:
+//! [`curve`]: mu*, N* and energies against time; [`kinetic_friction`]: its coefficient; [`frames`]:
 //! fields at chosen steps; [`instants`]: fields at the instants A-F; [`energy`]: the energy balance;
 //! [`events`]: slip events, each with its position and size; [`precursors`]: how far the slip events of a
 //! slider driven at an edge reach; [`Largest`]: the largest mu* until the drive has moved by a given path;
@@ -14,11 +14,11 @@ pub mod events;
 pub mod frames;
 pub mod front;
 pub mod instants;
+pub mod kinetic_friction;
 pub mod kymograph;
 mod largest;
 pub(crate) mod observer;
 pub mod precursors;
-pub mod summary;
 
 pub use crate::kernel::block::Field;
 pub use crate::measure::{CurvePoint, Largest, Peak};
@@ -29,7 +29,7 @@ pub use events::{Event, Events};
 pub use frames::{Frame, Frames};
 pub use front::{Front, Quantiles};
 pub use instants::Instants;
+pub use kinetic_friction::{Kinetic, KineticHistory, KineticStart, NoUncertainty};
 pub use kymograph::Kymograph;
 pub use observer::{Observer, Schedule, Scheduled};
 pub use precursors::{Precursors, SlipEvent};
-pub use summary::{Kinetic, KineticHistory, KineticStart, NoUncertainty};

@@ -67,7 +67,7 @@ impl Precursors {
     /// the slider.
     fn length(&self, now: &Snapshot) -> f64 {
         let (lattice, edge) = (&now.model.lattice, self.edge);
-        let first = lattice.blocks_of(&now.model.rows).start;
+        let first = now.model.first_block();
         let mut reached = 0;
         now.read_rows(Field::Sliding, 1, |j, i, part| {
             let row = j * lattice.nx + i;
@@ -77,9 +77,8 @@ impl Precursors {
                 }
             }
         });
-        let mut length = [reached as f64 / edge.n_across(lattice) as f64];
-        now.communicator.largest(&mut length);
-        length[0]
+        now.communicator
+            .largest_of(reached as f64 / edge.n_across(lattice) as f64)
     }
 }
 

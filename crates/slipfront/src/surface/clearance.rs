@@ -3,9 +3,9 @@
 
 use std::collections::HashMap;
 
-use super::closest::{Closest, Effort, Form, TooMuch, between_boxes, widths};
-use super::contour::Ellipse;
+use super::contour::{Ellipse, rectangle};
 use super::outline::Curve;
+use super::outline_distance::{Closest, Effort, Form, TooMuch, between_boxes, widths};
 use super::pattern::{Array, grids};
 use super::texture::{Cavity, Shape, Texture, Tile};
 use crate::lattice::{Edges, Lattice};
@@ -59,7 +59,9 @@ fn measure(lattice: &Lattice, textures: &[Texture], effort: &mut Effort) -> Resu
         let drawn = match &texture.shape {
             Shape::Tile(tile) => Some((runs(tile), None)),
             Shape::Drawing(_) => return Ok(Clearance::default()),
-            _ => PlacedShape::of(lattice, texture, all, effort)?.map(|(widths, drawn)| (widths, Some(drawn))),
+            _ => {
+                PlacedShape::new(lattice, texture, all, effort)?.map(|(widths, drawn)| (widths, Some(drawn)))
+            }
         };
         let Some(([mut inside, mut outside], drawn)) = drawn else {
             continue;
@@ -73,8 +75,8 @@ fn measure(lattice: &Lattice, textures: &[Texture], effort: &mut Effort) -> Resu
     }
     let (pillars, dimples): (Vec<PlacedShape>, Vec<PlacedShape>) =
         shapes.into_iter().partition(|shape| shape.inverted);
-    let dimples = Copies::of(lattice, &dimples, effort)?;
-    let groups = pillars.chunks(1).map(|one| Copies::of(lattice, one, effort));
+    let dimples = Copies::new(lattice, &dimples, effort)?;
+    let groups = pillars.chunks(1).map(|one| Copies::new(lattice, one, effort));
     let pillars = groups.collect::<Result<Vec<_>, _>>()?;
     // The textured area between pillars separates them.
     for pillars in &pillars {
@@ -129,7 +131,7 @@ struct PlacedShape {
 
 impl PlacedShape {
     /// A shape other than a mask, with its widths inside and outside; none if no copy lies on the slider.
-    fn of(
+    fn new(
         lattice: &Lattice,
         texture: &Texture,
         all: bool,
@@ -205,7 +207,7 @@ fn form(lattice: &Lattice, texture: &Texture, all: bool) -> Option<(Form, Vec<[f
                 place
             };
             let shifts = groove.shifts(&grids(&texture.arrays)).into_iter();
-            let corners = vec![low, [high[0], low[1]], high, [low[0], high[1]]];
+            let corners = rectangle(low, high);
             return Some((Form::Polygon(corners), shifts.map(across).collect()));
         }
         Shape::Tile(_) | Shape::Drawing(_) => return None,
@@ -248,7 +250,7 @@ struct PlacedCopy {
 
 impl<'a> Copies<'a> {
     /// The copies of shapes on the slider, and those beyond its periodic edges, up to half the slider away.
-    fn of(lattice: &Lattice, shapes: &'a [PlacedShape], effort: &mut Effort) -> Result<Self, TooMuch> {
+    fn new(lattice: &Lattice, shapes: &'a [PlacedShape], effort: &mut Effort) -> Result<Self, TooMuch> {
         let size = [lattice.nx as f64, lattice.ny as f64];
         let mut copies = Vec::new();
         for (form, shape) in shapes.iter().enumerate() {
@@ -363,7 +365,7 @@ mod tests {
     use super::super::texture::{Groove, Orientation};
     use super::*;
 
-    fn of(lattice: &Lattice, shape: Shape, arrays: Vec<Array>, inverted: bool) -> [f64; 2] {
+    fn clearance_of(lattice: &Lattice, shape: Shape, arrays: Vec<Array>, inverted: bool) -> [f64; 2] {
         let texture = Texture {
             shape,
             arrays,
@@ -402,10 +404,13 @@ mod tests {
         };
         let nan = f64::NAN;
         let close = array([3, 1], [12.0, 12.0], false);
-        assert!(is_near(of(&free, ellipse(0.2), vec![], false), [8.0, nan]));
+        assert!(is_near(
+            clearance_of(&free, ellipse(0.2), vec![], false),
+            [8.0, nan]
+        ));
         // Semi-axes of 6 and 4: neighbours along x touch, and neighbours along y are 4 apart.
         assert!(is_near(
-            of(
+            clearance_of(
                 &free,
                 ellipse(0.2),
                 vec![array([3, 3], [13.0, 12.0], false)],
@@ -413,10 +418,13 @@ mod tests {
             ),
             [8.0, 1.0]
         ));
-        assert!(is_near(of(&free, ellipse(0.0), vec![close], true), [2.0, 10.0]));
+        assert!(is_near(
+            clearance_of(&free, ellipse(0.0), vec![close], true),
+            [2.0, 10.0]
+        ));
         // Beyond the edges, from 42 to 18 + 60.
         assert!(is_near(
-            of(
+            clearance_of(
                 &periodic,
                 ellipse(0.0),
                 vec![array([2, 1], [48.0, 1.0], false)],
@@ -426,7 +434,7 @@ mod tests {
         ));
         let diagonal = array([2, 2], [20.0, 10.0], true);
         assert!(is_near(
-            of(&free, ellipse(0.0), vec![diagonal], false),
+            clearance_of(&free, ellipse(0.0), vec![diagonal], false),
             [10.0, 200.0_f64.sqrt() - 10.0]
         ));
         // Clusters of four, which are nearer to each other than their members are.
@@ -434,7 +442,7 @@ mod tests {
             array([2, 1], [21.0, 1.0], false),
             array([2, 2], [11.0, 11.0], false),
         ];
-        let found = of(&free, ellipse(-0.0), clusters, false);
+        let found = clearance_of(&free, ellipse(-0.0), clusters, false);
         assert!(is_near(found, [10.0, 1.0]), "{found:?}");
         let groove = Shape::Groove(Groove {
             orientation: Orientation::Across,
@@ -442,11 +450,11 @@ mod tests {
             offset: 0.0,
         });
         assert!(is_near(
-            of(&free, groove, vec![array([4, 1], [10.0, 1.0], false)], false),
+            clearance_of(&free, groove, vec![array([4, 1], [10.0, 1.0], false)], false),
             [2.5, 7.5]
         ));
         let square = Shape::Polygon(vec![[10.0, 10.0], [20.0, 10.0], [20.0, 13.0], [10.0, 13.0]]);
-        assert!(is_near(of(&free, square, vec![], false), [3.0, nan]));
+        assert!(is_near(clearance_of(&free, square, vec![], false), [3.0, nan]));
         // Arms have a width of 12 when vertical, at a slope of 2 to 3; the notch of a chevron between them is
         // a corner, not a gap.
         let chevron = [
@@ -457,7 +465,7 @@ mod tests {
             [25.0, 34.0],
             [10.0, 24.0],
         ];
-        let found = of(&free, Shape::Polygon(chevron.to_vec()), vec![], false);
+        let found = clearance_of(&free, Shape::Polygon(chevron.to_vec()), vec![], false);
         assert!(
             (found[0] - 12.0 * 15.0 / 325.0_f64.sqrt()).abs() < 1e-9,
             "{found:?}"

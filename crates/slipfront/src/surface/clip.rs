@@ -4,7 +4,9 @@
 use std::f64::consts::{PI, TAU};
 
 use super::contour::{Contour, Ellipse, Piece};
+use super::outline::range;
 use super::texture::OUTLINE_VERTICES;
+use crate::vector_field::{cross, subtract};
 
 /// Lengths below this are rounding errors: coordinates of up to 10^7 blocks have rounding errors of 10^-9.
 const NEAR: f64 = 1e-8;
@@ -44,7 +46,7 @@ pub fn clip(contour: &Contour, region: &[Contour]) -> Vec<Contour> {
         let middle = chain[chain.len() / 2].at(0.5);
         !is_on(&own, middle) && holds(&own, middle)
     };
-    let bounds = bounds(own.iter().flat_map(Piece::bounds));
+    let bounds = [0, 1].map(|axis| range(own.iter().flat_map(|piece| piece.bounds()[axis])));
     let mut close = edge.clone();
     close.retain(|piece| is_close(bounds, piece.bounds()));
     let (mut kept, lost): (Vec<_>, Vec<_>) = chains(&own, &close).into_iter().partition(is_within);
@@ -107,20 +109,12 @@ fn chains(curve: &[Piece], others: &[Piece]) -> Vec<Vec<Piece>> {
     chains
 }
 
-/// Smallest and largest (x, y) of points.
-fn bounds(points: impl IntoIterator<Item = Point>) -> [Point; 2] {
-    let none = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    points.into_iter().fold(none, |[low, high], point| {
-        [
-            [0, 1].map(|axis| low[axis].min(point[axis])),
-            [0, 1].map(|axis| high[axis].max(point[axis])),
-        ]
-    })
-}
-
-/// Whether two rectangles, given by their smallest and largest (x, y), have points in common.
-fn is_close([low, high]: [Point; 2], [other_low, other_high]: [Point; 2]) -> bool {
-    (0..2).all(|axis| low[axis] < other_high[axis] + NEAR && other_low[axis] < high[axis] + NEAR)
+/// Whether two rectangles, given by their smallest and largest x and y, have points in common.
+fn is_close(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> bool {
+    let pairs = one.into_iter().zip(other);
+    pairs
+        .into_iter()
+        .all(|([low, high], [from, to])| low < to + NEAR && from < high + NEAR)
 }
 
 /// Closed curves, joined from chains that end where others begin or end.
@@ -160,7 +154,7 @@ fn holds(curves: &[Piece], point: Point) -> bool {
         let [from, to] = piece.ends();
         // The ray to the right crosses a rising chord if the point is on the left of the chord, and a falling
         // one if the point is on its right.
-        let is_right = cross(minus(to, from), minus(point, from)) <= 0.0;
+        let is_right = cross(subtract(to, from), subtract(point, from)) <= 0.0;
         let crosses = match (from[1] <= point[1], to[1] <= point[1]) {
             (true, false) => !is_right,
             (false, true) => is_right,
@@ -175,16 +169,8 @@ fn holds(curves: &[Piece], point: Point) -> bool {
     curves.iter().filter(changes).count() % 2 == 1
 }
 
-fn minus(p: Point, q: Point) -> Point {
-    [p[0] - q[0], p[1] - q[1]]
-}
-
 fn along(p: Point, direction: Point, length: f64) -> Point {
     [p[0] + length * direction[0], p[1] + length * direction[1]]
-}
-
-fn cross(p: Point, q: Point) -> f64 {
-    p[0] * q[1] - p[1] * q[0]
 }
 
 fn distance(p: Point, q: Point) -> f64 {
@@ -194,7 +180,7 @@ fn distance(p: Point, q: Point) -> f64 {
 /// The direction from one point to another one.
 fn direction(from: Point, to: Point) -> Point {
     let length = distance(from, to);
-    minus(to, from).map(|part| part / length)
+    subtract(to, from).map(|part| part / length)
 }
 
 /// The two points of a circle on a line with `foot` as its point nearest to the centre. For a tangent both
@@ -215,7 +201,7 @@ impl Piece {
     /// The point at this share of the path from the first point to the last one.
     fn at(&self, share: f64) -> Point {
         match self {
-            Self::Line([from, to]) => along(*from, minus(*to, *from), share),
+            Self::Line([from, to]) => along(*from, subtract(*to, *from), share),
             Self::Arc(circle, [from, to]) => circle.at(from + share * (to - from)),
         }
     }
@@ -224,11 +210,11 @@ impl Piece {
     fn share(&self, point: Point) -> f64 {
         match self {
             Self::Line([from, to]) => {
-                let ([x, y], way) = (minus(*to, *from), minus(point, *from));
+                let ([x, y], way) = (subtract(*to, *from), subtract(point, *from));
                 (way[0] * x + way[1] * y) / (x * x + y * y)
             }
             Self::Arc(circle, [from, to]) => {
-                let (way, [c, s]) = (minus(point, circle.center), circle.axis);
+                let (way, [c, s]) = (subtract(point, circle.center), circle.axis);
                 let parameter = libm::atan2(way[1] * c - way[0] * s, way[0] * c + way[1] * s);
                 // Within half a turn of the middle of the arc.
                 let after = (parameter - 0.5 * (from + to) + PI).rem_euclid(TAU) - PI;
@@ -271,12 +257,12 @@ impl Piece {
         }
     }
 
-    /// Smallest and largest (x, y) of the piece, or of the whole circle for an arc.
-    fn bounds(&self) -> [Point; 2] {
-        bounds(match self {
-            Self::Line(ends) => *ends,
+    /// Smallest and largest x and y of the piece, or of the whole circle for an arc.
+    fn bounds(&self) -> [[f64; 2]; 2] {
+        [0, 1].map(|axis| match self {
+            Self::Line(ends) => range(ends.map(|end| end[axis])),
             Self::Arc(circle, _) => {
-                [-1.0, 1.0].map(|sign| circle.center.map(|center| center + sign * circle.semi_axes[0]))
+                range([-1.0, 1.0].map(|sign| circle.center[axis] + sign * circle.semi_axes[0]))
             }
         })
     }
@@ -295,13 +281,13 @@ impl Piece {
     fn meets(&self, other: &Self) -> Vec<Point> {
         let mut points = match (self, other) {
             (Self::Line(one), Self::Line(two)) => {
-                let (way, other_way) = (minus(one[1], one[0]), minus(two[1], two[0]));
+                let (way, other_way) = (subtract(one[1], one[0]), subtract(two[1], two[0]));
                 let turn = cross(way, other_way);
                 let longer = distance(one[0], one[1]).max(distance(two[0], two[1]));
                 if turn.abs() < NEAR * longer {
                     [*one, *two].concat()
                 } else {
-                    let share = cross(minus(two[0], one[0]), other_way) / turn;
+                    let share = cross(subtract(two[0], one[0]), other_way) / turn;
                     vec![along(one[0], way, share)]
                 }
             }

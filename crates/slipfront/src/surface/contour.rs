@@ -42,7 +42,7 @@ pub enum Piece {
 impl Contour {
     /// The rectangle with these smallest and largest (x, y).
     pub fn rectangle(low: [f64; 2], high: [f64; 2]) -> Self {
-        Self::Polygon(vec![low, [high[0], low[1]], high, [low[0], high[1]]])
+        Self::Polygon(rectangle(low, high))
     }
 
     /// The pieces of the curve, in order: the quarters of an ellipse, or the edges of a polygon.
@@ -106,7 +106,7 @@ pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
             let rectangles = strips.flat_map(|shift| {
                 let bounds = groove.rectangle(lattice, shift);
                 let [low, high] = bounds;
-                placed(lattice, [[low[0], high[0]], [low[1], high[1]]])
+                shifts_onto(lattice, [[low[0], high[0]], [low[1], high[1]]])
                     .into_iter()
                     .map(move |[x, y]| bounds.map(|corner| [corner[0] + x, corner[1] + y]))
             });
@@ -126,7 +126,7 @@ pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
         for &y in rows {
             for &x in columns {
                 let bounds = [outlines.bounds(0, x), outlines.bounds(1, y)];
-                for [shift_x, shift_y] in placed(lattice, bounds) {
+                for [shift_x, shift_y] in shifts_onto(lattice, bounds) {
                     match &outlines.curve {
                         Curve::Ellipse { semi_axes, axis } => contours.push(Contour::Ellipse(Ellipse {
                             center: [x + shift_x, y + shift_y],
@@ -148,8 +148,13 @@ pub fn contours(lattice: &Lattice, texture: &Texture) -> Option<Vec<Contour>> {
     Some(contours)
 }
 
+/// The corners of the rectangle with these smallest and largest (x, y).
+pub(super) fn rectangle(low: [f64; 2], high: [f64; 2]) -> Vec<[f64; 2]> {
+    vec![low, [high[0], low[1]], high, [low[0], high[1]]]
+}
+
 /// The shifts by whole sliders along periodic axes that bring a contour with these bounds onto the slider.
-fn placed(lattice: &Lattice, bounds: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
+fn shifts_onto(lattice: &Lattice, bounds: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
     let along = |axis: usize| -> Vec<f64> {
         let size = [lattice.nx, lattice.ny][axis] as f64;
         let [low, high] = bounds[axis];

@@ -7,19 +7,19 @@
 
 mod clearance;
 mod clip;
-mod closest;
 mod coefficients;
 mod contour;
 mod correlation;
 mod drawing;
 mod load;
+mod load_sharing;
 mod mask_outline;
 mod mesh;
 mod outline;
+mod outline_distance;
 mod pattern;
-mod sharing;
 mod texture;
-mod whole;
+mod whole_surface;
 
 pub use clearance::{Clearance, clearance};
 pub use clip::clip;
@@ -28,16 +28,16 @@ pub use contour::{Contour, Ellipse, Piece, contours};
 pub use correlation::{CorrelatedField, deviation_along};
 pub use drawing::{FillRule, Part};
 pub use load::{Adhesion, Contact, Load, pressure_along};
+pub use load_sharing::share_load;
 pub use mask_outline::outline as mask_outline;
 pub use mesh::{Meshed, copies_overlap, mesh, mesh_watched};
 pub use pattern::{Array, n_copies};
-pub use sharing::share_load;
 pub use texture::{Cavity, Groove, Orientation, Shape, Texture, Tile, cavity_lambda, cavity_percent};
 
 use std::ops::Range;
 
 use self::coefficients::PART;
-use self::whole::Whole;
+use self::whole_surface::Whole;
 use crate::communicator::{Alone, Communicator};
 use crate::error::SurfaceError;
 use crate::lattice::Lattice;
@@ -150,24 +150,18 @@ impl Surface {
 
     /// The surface under some of the blocks. Values for the whole surface stay the same.
     pub(crate) fn of_some_blocks(&self, blocks: &Range<usize>) -> Self {
-        let some = |values: &[f64]| values[blocks.clone()].to_vec();
+        let part = |values: &[f64]| values[blocks.clone()].to_vec();
+        let marks = |marks: &[bool]| marks[blocks.clone()].to_vec();
         Self {
-            textured: self.textured[blocks.clone()].to_vec(),
-            mu_static: some(&self.mu_static),
-            mu_kinetic: some(&self.mu_kinetic),
+            textured: marks(&self.textured),
+            mu_static: part(&self.mu_static),
+            mu_kinetic: part(&self.mu_kinetic),
             contact: Contact {
-                pressure: self.contact.pressure.as_deref().map(some),
-                faces: self
-                    .contact
-                    .faces
-                    .as_ref()
-                    .map(|faces| faces[blocks.clone()].to_vec()),
+                pressure: self.contact.pressure.as_deref().map(part),
+                faces: self.contact.faces.as_deref().map(marks),
                 ..self.contact
             },
-            whole: self.whole,
-            load_factor: self.load_factor,
-            largest_load: self.largest_load,
-            min_slip_threshold: self.min_slip_threshold,
+            ..*self
         }
     }
 
@@ -247,6 +241,11 @@ impl Surface {
     /// those at the lower edge of an upright sheet, see [`Contact::faces`].
     pub fn n_facing(&self) -> usize {
         self.whole.n_blocks
+    }
+
+    /// Share of the [facing blocks](Self::n_facing) that are in contact.
+    pub fn share_in_contact(&self) -> f64 {
+        self.n_contact() as f64 / self.n_facing() as f64
     }
 
     /// Number of negative draws of coefficients that were set to 0, static and kinetic together, of all

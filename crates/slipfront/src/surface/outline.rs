@@ -89,6 +89,13 @@ impl Vertex {
     }
 }
 
+/// The smallest and the largest of some numbers.
+pub(super) fn range(numbers: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let widen = |[low, high]: [f64; 2], number: f64| [low.min(number), high.max(number)];
+    numbers.into_iter().fold(none, widen)
+}
+
 impl Outlines {
     /// A curve around the middle of `grids`, which contain the shifts of its copies from there.
     pub(super) fn at(curve: Curve, middle: [f64; 2], grids: &[Crossings]) -> Self {
@@ -140,10 +147,7 @@ impl Outlines {
             Curve::Polygon(rings) => {
                 let vertices = rings.iter().flat_map(|ring| &ring.vertices);
                 let terms = vertices.map(|vertex| [vertex.x, vertex.y][axis]);
-                let coordinates = terms.map(|terms| add(terms, center));
-                coordinates.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
-                    [low.min(at), high.max(at)]
-                })
+                range(terms.map(|terms| add(terms, center)))
             }
         }
     }

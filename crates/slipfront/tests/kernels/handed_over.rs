@@ -99,7 +99,7 @@ fn an_error_of_the_reader_ends_it_at_once() {
             execution,
             |column, _, _| {
                 calls += 1;
-                if column == BlockColumn::VelocityX as usize {
+                if BlockColumn::ALL[column] == BlockColumn::VelocityX {
                     return Err("the disk fails");
                 }
                 Ok(())

@@ -17,7 +17,7 @@ fn driven_at(edge: Edge, slider: &Slider, total: f64) -> Model {
         ..slider.clone()
     };
     let mut model = slider.model();
-    model.drive.k_drive = total / edge.n_blocks(&lattice) as f64;
+    model.drive.k_drive = total / [lattice.ny, lattice.nx][edge.axis()] as f64;
     model
 }
 

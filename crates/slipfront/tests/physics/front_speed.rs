@@ -89,7 +89,7 @@ fn planes_find_the_speed_of_a_front(tau: f64, (rows, direction, stiffness): (usi
     let mut simulation = from_state(&model, dt, state);
     simulation.run(Stop::at_step(steps), &mut []).unwrap();
     let times = simulation.into_first_slip_time_star();
-    let front = Front::of(&model.lattice, &times, times.len()).unwrap();
+    let front = Front::find(&model.lattice, &times, times.len()).unwrap();
     let speed = front.speed.unwrap().median;
     assert!((speed / exact - 1.0).abs() < 0.01, "{speed}, exactly {exact}");
     assert_eq!(front.nucleations, [0]);

@@ -19,7 +19,7 @@ struct FromField {
 impl Observer for FromField {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
         let model = now.model;
-        let bins = PositionBins::of(&model.lattice, &model.drive);
+        let bins = PositionBins::new(&model.lattice, &model.drive);
         let mut field = vec![0.0; model.surface.n_blocks()];
         now.read_field(Field::Sliding, &mut field);
         let (mut sliding, mut blocks) = (vec![0.0; bins.count], vec![0.0; bins.count]);

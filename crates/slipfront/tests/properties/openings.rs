@@ -1,7 +1,7 @@
 //! Openings of sets of blocks by squares, their widths and their pieces.
 
 use proptest::prelude::*;
-use slipfront::{Edges, Lattice, opening};
+use slipfront::{Edges, Lattice, block_sets};
 
 /// The definition of an opening, square by square.
 fn opened_by_squares(lattice: &Lattice, set: &[bool], side: usize) -> Vec<bool> {
@@ -39,7 +39,7 @@ proptest! {
         } else {
             opened_by_squares(&lattice, &set, side)
         };
-        prop_assert_eq!(opening::opened(&lattice, &set, side), expected);
+        prop_assert_eq!(block_sets::opened(&lattice, &set, side), expected);
     }
 }
 
@@ -55,17 +55,20 @@ fn drawn<const N: usize>(rows: [&str; N]) -> Vec<bool> {
 fn slivers_at_edges_are_seen() {
     let lattice = Lattice::free(5, 5);
     let set = drawn(["#....", "#....", "#.###", "#.###", "#.###"]);
-    assert_eq!(opening::width(&lattice, &set), Some(1));
-    assert_eq!(opening::n_pieces(&lattice, &set), 2);
-    let opened = opening::opened(&lattice, &set, 3);
+    assert_eq!(block_sets::width(&lattice, &set), Some(1));
+    assert_eq!(block_sets::n_pieces(&lattice, &set), 2);
+    let opened = block_sets::opened(&lattice, &set, 3);
     assert_eq!(opened, drawn([".....", ".....", "..###", "..###", "..###"]));
-    assert_eq!(opening::width(&lattice, &opened), Some(3));
+    assert_eq!(block_sets::width(&lattice, &opened), Some(3));
     // Around a periodic axis, the strip is a part of the set at the opposite edge.
     let around = Lattice::with_edges(5, 3, [Edges::Periodic, Edges::Free]);
     let set = drawn(["##..#"; 3]);
     assert_eq!(
-        (opening::width(&around, &set), opening::n_pieces(&around, &set)),
+        (
+            block_sets::width(&around, &set),
+            block_sets::n_pieces(&around, &set)
+        ),
         (Some(3), 1)
     );
-    assert_eq!(opening::width(&around, &[false; 15]), None);
+    assert_eq!(block_sets::width(&around, &[false; 15]), None);
 }

@@ -100,7 +100,8 @@ fn calibration_file(input: &[u8]) {
         .as_ref()
         .and_then(|table| table.get("instrument")?.as_table())
     {
-        let instrument = InstrumentKeys::of(keys).and_then(|keys| keys.instrument(Measure::Coefficient));
+        let instrument =
+            InstrumentKeys::from_table(keys).and_then(|keys| keys.instrument(Measure::Coefficient));
         match instrument {
             Err(error) => readable(&error),
             Ok(instrument) => {

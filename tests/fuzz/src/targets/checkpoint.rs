@@ -75,12 +75,12 @@ fn generated() -> Vec<Vec<u8>> {
 
 /// The latest checkpoint of a run folder.
 fn latest(folder: &Path) -> PathBuf {
-    Unfinished::of(folder).path().join(CHECKPOINT)
+    Unfinished::in_folder(folder).path().join(CHECKPOINT)
 }
 
 /// The bytes of the checkpoint of a run.
 fn save(folder: &Path, running: &Running) -> Vec<u8> {
-    Unfinished::of(folder).create().unwrap();
+    Unfinished::in_folder(folder).create().unwrap();
     Checkpoints::new(folder, running.case(), Timestamp::UNIX_EPOCH)
         .save(running, &Alone)
         .unwrap();
@@ -120,7 +120,7 @@ fn with_checksum(bytes: &[u8]) -> Vec<u8> {
 /// Resumes a run if the file can be read, and demands that what it then saves can be read again.
 fn resume(case: &Arc<Case>, file: &[u8]) {
     let folder = scratch::folder("checkpoint");
-    Unfinished::of(&folder).create().unwrap();
+    Unfinished::in_folder(&folder).create().unwrap();
     std::fs::write(latest(&folder), file).unwrap();
     let loaded = match Checkpoints::load(&folder, case, false, &Alone) {
         Ok(loaded) => loaded.unwrap(),

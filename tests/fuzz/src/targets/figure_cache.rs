@@ -30,7 +30,7 @@ pub(crate) const FIGURE_CACHE: Target = Target {
 fn generated() -> Vec<Vec<u8>> {
     let mut data = FigureData::default();
     data.numbers
-        .insert("fig99.one".to_owned(), MeasuredNumber::of(&[1.0, 2.0]));
+        .insert("fig99.one".to_owned(), MeasuredNumber::from_values(&[1.0, 2.0]));
     data.numbers
         .insert("fig99.two".to_owned(), MeasuredNumber::exact(f64::INFINITY));
     let small = postcard::to_stdvec(&data).unwrap();

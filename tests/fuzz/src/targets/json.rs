@@ -280,7 +280,7 @@ fn manifest(bytes: &[u8]) {
             }
         }
     }
-    Inspection::of(&folder).unwrap().managed_bytes().unwrap();
+    Inspection::read(&folder).unwrap().managed_bytes().unwrap();
     let case = folder.join("case.toml");
     match RunFolder::prepare(&folder, true, &[]) {
         Ok(_) => assert!(!folder.join("manifest.json").exists() && !case.exists()),
@@ -323,7 +323,7 @@ fn check_journal(input: &[u8]) {
     let summary = scratch::file("journals/run/summary.json", FINISHED);
     scratch::file("journals/run/case.toml", CASE);
     scratch::file("journals/run/.slipfront/journal.jsonl", input);
-    Inspection::of(&folder).unwrap().managed_bytes().unwrap();
+    Inspection::read(&folder).unwrap().managed_bytes().unwrap();
     match RunFolder::prepare(&folder, true, &[]) {
         Ok(_) => {
             let hash = file("", FINISHED).blake3;

@@ -21,7 +21,7 @@ use std::path::Path;
 
 pub use self::outlines::Drawing;
 pub(crate) use self::outlines::SLIDER_LAYER;
-use super::error::{ArrayError, contents_error, extension, unknown_extension};
+use super::error::{ArrayError, at_most, contents_error, extension, unknown_extension};
 
 /// Longest file, bytes.
 const FILE_MAX_BYTES: u64 = 64 << 20;
@@ -30,14 +30,8 @@ const FILE_MAX_BYTES: u64 = 64 << 20;
 /// # Errors
 /// [`ArrayError`] with both lengths.
 pub fn limit_length_of_drawing(path: &Path, found: u64) -> Result<(), ArrayError> {
-    if found <= FILE_MAX_BYTES {
-        return Ok(());
-    }
-    let problem = format!(
-        "has {found} bytes where a drawing takes at most {FILE_MAX_BYTES}; draw one copy and repeat it by `array`, or export \
-         a picture for a mask"
-    );
-    Err(contents_error(path, problem))
+    let remedy = "draw one copy and repeat it by `array`, or export a picture for a mask";
+    at_most(path, found, FILE_MAX_BYTES, "a drawing takes", remedy)
 }
 
 /// Reads the outlines of a drawing called `path`, for blocks with an edge of `block` mm. Curves become chords

@@ -57,7 +57,7 @@ pub(super) fn read(bytes: &[u8], block: f64) -> Result<Drawing, String> {
         ));
     }
     let mut reader = Reader {
-        rules: Rules::of(&document)?,
+        rules: Rules::read(&document)?,
         budget: Budget::new(),
         parts: Vec::new(),
         hidden: LeftOut::default(),
@@ -105,22 +105,13 @@ fn without_type(text: &str) -> Result<String, String> {
 fn page(root: Node, block: f64) -> Result<Map, String> {
     let millimetres = |name: &str| {
         let written = root.attribute(name).unwrap_or_default();
-        let unit = match written.trim().parse::<Length>() {
-            Ok(Length {
-                unit: LengthUnit::Mm, ..
-            }) => 1.0,
-            Ok(Length {
-                unit: LengthUnit::Cm, ..
-            }) => 10.0,
-            Ok(Length {
-                unit: LengthUnit::In, ..
-            }) => MM_PER_INCH,
-            Ok(Length {
-                unit: LengthUnit::Pt, ..
-            }) => MM_PER_INCH / 72.0,
-            Ok(Length {
-                unit: LengthUnit::Pc, ..
-            }) => MM_PER_INCH / 6.0,
+        let length = written.trim().parse::<Length>().ok();
+        let unit = match length.map(|length| length.unit) {
+            Some(LengthUnit::Mm) => 1.0,
+            Some(LengthUnit::Cm) => 10.0,
+            Some(LengthUnit::In) => MM_PER_INCH,
+            Some(LengthUnit::Pt) => MM_PER_INCH / 72.0,
+            Some(LengthUnit::Pc) => MM_PER_INCH / 6.0,
             _ => {
                 return Err(format!(
                     "states no true size: its `{name}` is \"{}\"; give width and height of the page in mm, as in width=\"10mm\" \
@@ -129,10 +120,7 @@ fn page(root: Node, block: f64) -> Result<Map, String> {
                 ));
             }
         };
-        let number = written
-            .trim()
-            .parse::<Length>()
-            .map_or(f64::NAN, |length| length.number);
+        let number = length.map_or(f64::NAN, |length| length.number);
         if number * unit > 0.0 {
             return Ok(number * unit);
         }
@@ -175,6 +163,11 @@ fn about(node: Node, problem: &str) -> String {
     format!("has a <{}> in line {} {problem}", single_line(name), line(node))
 }
 
+/// Refuses an element; `problem` follows its name.
+fn refuse<T>(node: Node, problem: &str) -> Result<T, String> {
+    Err(about(node, problem))
+}
+
 struct Reader<'x> {
     rules: Rules<'x>,
     budget: Budget,
@@ -202,10 +195,10 @@ impl LeftOut {
 impl<'x> Reader<'x> {
     fn group(&mut self, group: Node<'x, 'x>, map: Map, style: Style, depth: usize) -> Result<(), String> {
         if depth > MAX_DEPTH {
-            return Err(about(
+            return refuse(
                 group,
                 &format!("within more than {MAX_DEPTH} groups: ungroup them"),
-            ));
+            );
         }
         let style = self.rules.style(group, style);
         for node in group.children().filter(Node::is_element) {
@@ -229,25 +222,15 @@ impl<'x> Reader<'x> {
             return Ok(());
         }
         for name in ["clip-path", "mask", "filter"] {
-            if self
-                .rules
-                .property(node, name)
-                .is_some_and(|value| value != "none")
-            {
-                return Err(about(
-                    node,
-                    &format!("that a `{name}` changes: apply it to the path, or remove it"),
-                ));
+            let value = self.rules.property(node, name);
+            if value.is_some_and(|value| value != "none") {
+                let problem = format!("that a `{name}` changes: apply it to the path, or remove it");
+                return refuse(node, &problem);
             }
         }
-        if node
-            .attribute("style")
-            .is_some_and(|style| style.contains("transform"))
-        {
-            return Err(about(
-                node,
-                "with `transform` in its style: write it as an attribute",
-            ));
+        let own_style = node.attribute("style").unwrap_or_default();
+        if own_style.contains("transform") {
+            return refuse(node, "with `transform` in its style: write it as an attribute");
         }
         let map = map.after(transform(node)?);
         match kind {
@@ -255,10 +238,10 @@ impl<'x> Reader<'x> {
             "path" | "rect" | "circle" | "ellipse" | "polygon" | "polyline" | "line" => {
                 self.shape(node, map, style)
             }
-            _ => Err(about(
+            _ => refuse(
                 node,
                 "which has no outline of its own: convert it to a path (Inkscape: Path > Object to Path), or hide it",
-            )),
+            ),
         }
     }
 
@@ -276,26 +259,24 @@ impl<'x> Reader<'x> {
                 return Ok(());
             }
             (_, Paint::White, _) => {
-                return Err(about(
+                return refuse(
                     node,
                     "filled with white, which could be a hole or nothing: cut holes (Inkscape: Path > Difference), or hide it",
-                ));
+                );
             }
             (_, Paint::Nothing, _) => {
-                return Err(about(
-                    node,
-                    "with a line and no fill, so that it has no inside: fill it, or hide it",
-                ));
+                let problem = "with a line and no fill, so that it has no inside: fill it, or hide it";
+                return refuse(node, problem);
             }
         }
         let mut pen = Pen::new(map, &mut self.budget);
         let mut rings = Vec::new();
         for (ring, is_closed) in outlines(node, &mut pen)? {
             if !is_closed && ring.len() > 2 {
-                return Err(about(
+                return refuse(
                     node,
                     "with an open line: close it (Inkscape: Shift+J on its two ends)",
-                ));
+                );
             }
             if ring.len() > 2 {
                 rings.push(ring);
@@ -353,10 +334,8 @@ fn outlines(node: Node, pen: &mut Pen) -> Result<Vec<Outline>, String> {
         let read = read.filter(|read| *read >= 0.0 || !is_size);
         read.map(Some).ok_or_else(|| {
             let text = single_line(text);
-            about(
-                node,
-                &format!("with {name}=\"{text}\", which is no length: give a number"),
-            )
+            let problem = format!("with {name}=\"{text}\", which is no length: give a number");
+            about(node, &problem)
         })
     };
     let number = |name: &str| optional(name).map(|read| read.unwrap_or(0.0));

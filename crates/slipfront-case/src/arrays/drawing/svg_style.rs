@@ -42,17 +42,15 @@ pub(super) struct Rules<'x>(HashMap<&'x str, Declared<'x>>);
 
 impl<'x> Rules<'x> {
     /// Reads the style sheets.
-    pub(super) fn of(document: &'x Document) -> Result<Self, String> {
+    pub(super) fn read(document: &'x Document) -> Result<Self, String> {
         let mut rules: HashMap<&str, Declared> = HashMap::new();
-        let sheets = document
-            .descendants()
-            .filter(|node| node.tag_name().name() == "style");
+        let elements = document.descendants();
+        let sheets = elements.filter(|node| node.tag_name().name() == "style");
         let texts = sheets
             .flat_map(|sheet| sheet.children())
             .filter_map(|node| node.text());
-        let all = texts
-            .flat_map(|sheet| sheet.split('}'))
-            .filter(|rule| !rule.trim().is_empty());
+        let all = texts.flat_map(|sheet| sheet.split('}'));
+        let all = all.filter(|rule| !rule.trim().is_empty());
         for (number, rule) in all.enumerate() {
             let (selectors, text) = rule.split_once('{').unwrap_or((rule, ""));
             for selector in selectors.split(',').map(str::trim) {

@@ -26,7 +26,7 @@ impl FirstLines {
     }
 
     /// A sentence on a first row or column that is evenly spaced, if the second is not.
-    pub(super) fn doubt(&self) -> Option<String> {
+    pub(super) fn axis_warning(&self) -> Option<String> {
         let [rows, columns] = [&self.rows, &self.columns].map(|[first, second]| {
             // The corner, which the row and the column share, belongs to neither.
             let (first, second) = (first.get(1..)?, second.get(1..)?);

@@ -16,6 +16,17 @@ pub(super) struct Line<'a> {
     pub(super) heights: &'a [f64],
 }
 
+impl<'a> Line<'a> {
+    /// All points of a row.
+    pub(super) fn of_row(row: usize, heights: &'a [f64]) -> Self {
+        Self {
+            row,
+            column: 0,
+            heights,
+        }
+    }
+}
+
 /// Receives the points of a file, in any order.
 pub(super) type Take<'a> = dyn FnMut(&Line) -> Result<(), ArrayError> + 'a;
 
@@ -32,6 +43,19 @@ pub(super) struct HeightGrid {
     pub(super) height_unit: Option<f64>,
     /// Sentences on how the file was read, and on doubtful features.
     pub(super) notes: Vec<String>,
+}
+
+impl HeightGrid {
+    /// Points of a file that states no unit.
+    pub(super) fn without_units(points: [usize; 2], top_first: bool) -> Self {
+        Self {
+            points,
+            top_first,
+            pixel: None,
+            height_unit: None,
+            notes: Vec::new(),
+        }
+    }
 }
 
 /// Number of points along x and along y from a header; an error if there are too many.

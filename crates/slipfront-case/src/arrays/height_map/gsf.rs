@@ -1,12 +1,12 @@
 //! Gwyddion simple fields: lines of text, padded with zeros to a multiple of four bytes, then 32-bit numbers,
 //! the top row first.
 
-use std::io::{BufRead, Seek, SeekFrom};
+use std::io::SeekFrom;
 use std::path::Path;
 
 use super::grid::{HeightGrid, Line, Take, points};
+use crate::arrays::array_file::ArrayFile;
 use crate::arrays::error::{ArrayError, broken, contents_error};
-use crate::arrays::head::length_and_head;
 use crate::quantity::Length;
 use slipfront_base::text::truncated;
 
@@ -14,14 +14,11 @@ const MAGIC: &[u8] = b"Gwyddion Simple Field 1.0\n";
 /// Largest length of a header: comments may make it longer than a few hundred bytes.
 const HEADER_MAX_BYTES: u64 = 1 << 20;
 
-pub(super) fn read(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
-    take: &mut Take,
-) -> Result<HeightGrid, ArrayError> {
+pub(super) fn read(file: &mut ArrayFile, take: &mut Take) -> Result<HeightGrid, ArrayError> {
+    let path = file.path;
     let read_error = ArrayError::read(path);
     let refuse = |detail: &str| broken(path, ".gsf", detail);
-    let (length, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
+    let (length, head) = file.length_and_head(HEADER_MAX_BYTES)?;
     let Some(lines) = head.strip_prefix(MAGIC) else {
         return Err(refuse("it does not begin with `Gwyddion Simple Field 1.0`"));
     };
@@ -39,19 +36,15 @@ pub(super) fn read(
         let detail = format!("it has {length} bytes, but its header requires {wanted}");
         return Err(refuse(&detail));
     }
-    source.seek(SeekFrom::Start(start)).map_err(&read_error)?;
+    file.source.seek(SeekFrom::Start(start)).map_err(&read_error)?;
     let mut bytes = vec![0; 4 * nx];
     let mut heights = vec![0.0; nx];
     for row in 0..ny {
-        source.read_exact(&mut bytes).map_err(&read_error)?;
+        file.source.read_exact(&mut bytes).map_err(&read_error)?;
         for (height, bytes) in heights.iter_mut().zip(bytes.as_chunks().0) {
             *height = f64::from(f32::from_le_bytes(*bytes));
         }
-        take(&Line {
-            row,
-            column: 0,
-            heights: &heights,
-        })?;
+        take(&Line::of_row(row, &heights))?;
     }
     Ok(grid)
 }
@@ -73,11 +66,9 @@ impl<'a> GsfHeader<'a> {
             _ => None,
         };
         Ok(HeightGrid {
-            points,
-            top_first: true,
             pixel,
             height_unit: self.in_metres("ZUnits")?,
-            notes: Vec::new(),
+            ..HeightGrid::without_units(points, true)
         })
     }
 

@@ -1,20 +1,17 @@
 //! Heights as the grey levels of a picture: PNG of 16 bits. The top row lies at the largest y.
 
-use std::io::{BufRead, Seek};
 use std::path::Path;
 
 use png::{BitDepth, ColorType, Transformations};
 
 use super::grid::{HeightGrid, Line, Take, points};
+use crate::arrays::array_file::ArrayFile;
 use crate::arrays::error::{ArrayError, contents_error};
 use crate::arrays::mask::{decoding_error, png_reader};
 
-pub(super) fn read(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
-    take: &mut Take,
-) -> Result<HeightGrid, ArrayError> {
-    let mut reader = png_reader(path, source, Transformations::IDENTITY)?;
+pub(super) fn read(file: &mut ArrayFile, take: &mut Take) -> Result<HeightGrid, ArrayError> {
+    let path = file.path;
+    let mut reader = png_reader(file, Transformations::IDENTITY)?;
     let info = reader.info();
     match info.color_type {
         ColorType::Grayscale => {}
@@ -35,20 +32,10 @@ pub(super) fn read(
         for (height, bytes) in heights.iter_mut().zip(stored.data().as_chunks().0) {
             *height = f64::from(u16::from_be_bytes(*bytes));
         }
-        take(&Line {
-            row,
-            column: 0,
-            heights: &heights,
-        })?;
+        take(&Line::of_row(row, &heights))?;
         row += 1;
     }
-    Ok(HeightGrid {
-        points,
-        top_first: true,
-        pixel: None,
-        height_unit: None,
-        notes: Vec::new(),
-    })
+    Ok(HeightGrid::without_units(points, true))
 }
 
 /// An error about a colour picture: its colours have no known order of heights.

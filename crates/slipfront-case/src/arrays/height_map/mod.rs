@@ -26,6 +26,7 @@ use self::axis::FirstLines;
 use self::grid::{HeightGrid, Line, Take, points};
 use self::quantum::Quantum;
 use self::roughness::{HeightRange, Mean, Moments, Plane, PlaneSums};
+use super::array_file::ArrayFile;
 use super::error::{ArrayError, contents_error, extension, unknown_extension};
 use super::npy;
 use crate::extremes::Extremes;
@@ -81,6 +82,7 @@ pub fn height_map(
     preparation: &Preparation,
     room: &Room,
 ) -> Result<HeightMap, ArrayError> {
+    let mut file = ArrayFile { path, source };
     let too_far_apart = || {
         let problem = "has heights too far apart to be averaged: check its numbers".to_owned();
         contents_error(path, problem)
@@ -92,7 +94,7 @@ pub fn height_map(
         found.ok_or_else(too_far_apart)
     };
     let (mut mean, mut edges, mut extremes) = (Mean::default(), FirstLines::default(), Extremes::default());
-    let grid = read(path, source, preparation, &mut |line| {
+    let grid = read(&mut file, preparation, &mut |line| {
         mean.add(line.heights);
         extremes.add(line.heights);
         edges.add(line);
@@ -101,20 +103,20 @@ pub fn height_map(
     let (pixel, unit) = (pixel(path, &grid, units)?, height_unit(path, &grid, units)?);
     let points = grid.points;
     let size = [0, 1].map(|axis| points[axis] as f64 * pixel[axis]);
-    keep_aspect(path, size, room, edges.doubt())?;
+    keep_aspect(path, size, room, edges.axis_warning())?;
     let n_missing = points[0] * points[1] - mean.count();
     let (mut middle, mut range) = range_of(&mean)?;
 
     let mut plane = Plane::default();
     if preparation.is_levelled {
         let mut sums = PlaneSums::new(points);
-        read(path, source, preparation, &mut |line| {
+        read(&mut file, preparation, &mut |line| {
             sums.add(line, middle);
             Ok(())
         })?;
         plane = sums.plane();
         let (mut levelled, mut heights) = (Mean::default(), Vec::new());
-        read(path, source, preparation, &mut |line| {
+        read(&mut file, preparation, &mut |line| {
             plane.subtract(line, &mut heights);
             levelled.add(&heights);
             Ok(())
@@ -122,9 +124,9 @@ pub fn height_map(
         (middle, range) = range_of(&levelled)?;
     }
     let (mut moments, mut sums) = (Moments::default(), PlaneSums::new(points));
-    let mut averages = Averages::new(points, room.blocks, Quantum::of(range));
+    let mut averages = Averages::new(points, room.blocks, Quantum::for_range(range));
     let mut heights = Vec::new();
-    read(path, source, preparation, &mut |line| {
+    read(&mut file, preparation, &mut |line| {
         if line.row >= points[1] || line.column + line.heights.len() > points[0] {
             return Err(contents_error(
                 path,
@@ -168,7 +170,7 @@ pub fn height_map(
         return Err(contents_error(path, problem));
     }
     let mut notes = grid.notes;
-    notes.extend(edges.doubt());
+    notes.extend(edges.axis_warning());
     if n_missing > 0 {
         notes.push(format!(
             "{} of its {} points were not measured: blocks have the mean of the others",
@@ -241,14 +243,9 @@ const LARGE_TILT: f64 = 0.9;
 const FAR_OFF: f64 = 50.0;
 
 /// Reads all points of a file. Missing points become NaN; all others are finite.
-fn read(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
-    preparation: &Preparation,
-    take: &mut Take,
-) -> Result<HeightGrid, ArrayError> {
-    let mut marked = Vec::new();
-    read_file(path, source, preparation, &mut |line| {
+fn read(file: &mut ArrayFile, preparation: &Preparation, take: &mut Take) -> Result<HeightGrid, ArrayError> {
+    let (path, mut marked) = (file.path, Vec::new());
+    read_file(file, preparation, &mut |line| {
         marked.clear();
         for (column, &height) in (line.column..).zip(line.heights) {
             let is_missing = preparation.is_missing(height);
@@ -266,33 +263,27 @@ fn read(
 
 /// Reads all points of a file without any treatment.
 fn read_file(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
+    file: &mut ArrayFile,
     preparation: &Preparation,
     take: &mut Take,
 ) -> Result<HeightGrid, ArrayError> {
-    source.rewind().map_err(ArrayError::read(path))?;
+    let path = file.path;
+    file.source.rewind().map_err(ArrayError::read(path))?;
     let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
     let [nx, ny] = match extension(path).as_str() {
-        "npy" => npy::rows(path, source, take_line)?,
-        "csv" | "txt" | "dat" | "asc" | "xyz" => return text::read(path, source, preparation, take),
-        "gsf" => return gsf::read(path, source, take),
-        "x3p" => return x3p::read(path, source, preparation.is_missing(f64::NAN), take),
-        "png" => return image::read(path, source, take),
-        "tif" | "tiff" => return tiff::read(path, source, take),
+        "npy" => npy::rows(file, take_line)?,
+        "csv" | "txt" | "dat" | "asc" | "xyz" => return text::read(file, preparation, take),
+        "gsf" => return gsf::read(file, take),
+        "x3p" => return x3p::read(file, preparation.is_missing(f64::NAN), take),
+        "png" => return image::read(file, take),
+        "tif" | "tiff" => return tiff::read(file, take),
         other => {
             let known = ".npy, .csv (.txt, .dat, .asc, .xyz), .gsf, .x3p, .png or .tif; Gwyddion and the Python package SurfaceTopography \
                          write them from files of instruments";
             return Err(unknown_extension(path, other, known));
         }
     };
-    Ok(HeightGrid {
-        points: points(path, "array", nx, ny)?,
-        top_first: false,
-        pixel: None,
-        height_unit: None,
-        notes: Vec::new(),
-    })
+    Ok(HeightGrid::without_units(points(path, "array", nx, ny)?, false))
 }
 
 fn not_measured(path: &Path, height: f64, [row, column]: [usize; 2]) -> ArrayError {
@@ -348,9 +339,9 @@ fn height_unit(path: &Path, grid: &HeightGrid, units: &HeightMapUnits) -> Result
     }
 }
 
-/// Refuses a map, with a doubt about its first lines, if its aspect ratio differs from that of the blocks by
-/// more than half a block of the longer side.
-fn keep_aspect(path: &Path, size: [f64; 2], room: &Room, doubt: Option<String>) -> Result<(), ArrayError> {
+/// Refuses a map, with a warning about its first lines, if its aspect ratio differs from that of the blocks
+/// by more than half a block of the longer side.
+fn keep_aspect(path: &Path, size: [f64; 2], room: &Room, warning: Option<String>) -> Result<(), ArrayError> {
     let blocks = room.blocks;
     let aspect = size[0] / size[1];
     let (longer, shorter, ratio) = if aspect >= 1.0 {
@@ -380,7 +371,7 @@ fn keep_aspect(path: &Path, size: [f64; 2], room: &Room, doubt: Option<String>) 
         four_digits(blocks[0] as f64 / blocks[1] as f64),
         right[0],
         right[1],
-        doubt.map_or(String::new(), |doubt| format!("; {doubt}"))
+        warning.map_or(String::new(), |warning| format!("; {warning}"))
     );
     Err(contents_error(path, problem))
 }

@@ -13,7 +13,7 @@ pub(super) struct Quantum {
 
 impl Quantum {
     /// The quantum of heights in a finite range.
-    pub(super) fn of(range: HeightRange) -> Self {
+    pub(super) fn for_range(range: HeightRange) -> Self {
         const EXPONENT: u64 = 0x7ff << 52;
         const SMALLEST: f64 = f64::from_bits(1);
         let power = f64::from_bits((range.highest - range.lowest).to_bits() & EXPONENT);
@@ -47,7 +47,7 @@ mod tests {
             (0.1, 0.1),
             (0.0, 5e-324),
         ] {
-            let quantum = Quantum::of(HeightRange { lowest, highest });
+            let quantum = Quantum::for_range(HeightRange { lowest, highest });
             assert!(quantum.count(highest) < 1 << 53);
             for height in [lowest, highest, lowest + 0.25 * (highest - lowest).trunc()] {
                 assert_eq!(quantum.height(quantum.count(height) as f64), height);

@@ -98,7 +98,7 @@ pub(super) struct PlaneSums {
     middle: [f64; 2],
     count: f64,
     /// Sums of x, y and z.
-    of: [f64; 3],
+    sums: [f64; 3],
     /// Sums of xx, xy, yy, xz, yz and zz.
     products: [f64; 6],
 }
@@ -109,7 +109,7 @@ impl PlaneSums {
         Self {
             middle: points.map(|count| (count as f64 - 1.0) / 2.0),
             count: 0.0,
-            of: [0.0; 3],
+            sums: [0.0; 3],
             products: [0.0; 6],
         }
     }
@@ -123,7 +123,7 @@ impl PlaneSums {
                 continue;
             }
             self.count += 1.0;
-            for (sum, value) in self.of.iter_mut().zip([x, y, z]) {
+            for (sum, value) in self.sums.iter_mut().zip([x, y, z]) {
                 *sum += value;
             }
             for (sum, product) in self
@@ -142,11 +142,11 @@ impl PlaneSums {
     /// Sxx a + Sxy b = Sxz,   Sxy a + Syy b = Syz,   share = (a Sxz + b Syz)/Szz
     /// ```
     pub(super) fn plane(&self) -> Plane {
-        let [x, y, z] = self.of;
+        let [x, y, z] = self.sums;
         let about = |product: usize, a: f64, b: f64| self.products[product] - a * b / self.count.max(1.0);
         let [xx, xy, yy] = [about(0, x, x), about(1, x, y), about(2, y, y)];
         let [xz, yz, zz] = [about(3, x, z), about(4, y, z), about(5, z, z)];
-        let ratio = |sum: f64, of: f64| if of > 0.0 { sum / of } else { 0.0 };
+        let ratio = |sum: f64, total: f64| if total > 0.0 { sum / total } else { 0.0 };
         let determinant = xx * yy - xy * xy;
         // Points on one line define no plane, but may have a slope along it.
         let slopes = match determinant > 1e-12 * xx * yy {

@@ -1,7 +1,6 @@
 //! Height maps as text: a matrix of heights, with or without a header that states units, or a list of points
 //! x, y, z on a regular grid.
 
-use std::io::{BufRead, Seek};
 use std::path::Path;
 
 use slipfront_base::number_format::with_si_prefix;
@@ -9,20 +8,20 @@ use slipfront_base::text::truncated;
 
 use super::grid::{HeightGrid, Line, Take, points};
 use super::preparation::Preparation;
+use crate::arrays::array_file::ArrayFile;
 use crate::arrays::error::{ArrayError, contents_error};
-use crate::arrays::head::length_and_head;
 use crate::arrays::table;
 use crate::quantity::Length;
 use crate::table::{Encoding, HEAD_BYTES, TableLayout};
 
 pub(super) fn read(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
+    file: &mut ArrayFile,
     preparation: &Preparation,
     take: &mut Take,
 ) -> Result<HeightGrid, ArrayError> {
-    let (_, head) = length_and_head(path, source, HEAD_BYTES)?;
-    let stated = Stated::of(path, &head)?;
+    let path = file.path;
+    let (_, head) = file.length_and_head(HEAD_BYTES)?;
+    let stated = Stated::read(path, &head)?;
     let layout = table::layout_of_map(path, &head, preparation.table)?;
     // Words and empty fields are such points, too.
     let gaps = preparation.is_missing(f64::NAN);
@@ -34,11 +33,11 @@ pub(super) fn read(
         ));
     }
     if layout.columns == 3
-        && let Some(list) = PointList::of(path, source, &layout, gaps)?
+        && let Some(list) = PointList::find(file, &layout, gaps)?
     {
         let [nx, ny] = list.points();
         let mut is_seen = vec![false; nx * ny];
-        table::rows(path, source, &layout, gaps, |_, point| {
+        table::rows(file, &layout, gaps, |_, point| {
             let [column, row] = [0, 1].map(|axis| list.place(axis, point[axis]));
             let is_second = is_seen.get_mut(row * nx + column);
             if is_second.is_none_or(|seen| std::mem::replace(seen, true)) {
@@ -63,11 +62,8 @@ pub(super) fn read(
             })?;
         }
         return Ok(HeightGrid {
-            points: [nx, ny],
-            top_first: false,
-            pixel: None,
-            height_unit: None,
             notes,
+            ..HeightGrid::without_units([nx, ny], false)
         });
     }
     let take_line = |[row, column]: [usize; 2], heights: &[f64]| {
@@ -81,7 +77,7 @@ pub(super) fn read(
         }
         take(&Line { row, column, heights })
     };
-    let [nx, ny] = table::rows(path, source, &layout, gaps, take_line)?;
+    let [nx, ny] = table::rows(file, &layout, gaps, take_line)?;
     if nx <= WIDTH_OF_LISTS && ny >= LENGTH_OF_LISTS {
         let problem = format!(
             "has {nx} numbers in each of {ny} lines, like a list of points or a profile: a list x, y, z must lie on a regular grid \
@@ -132,8 +128,8 @@ impl Stated {
     ///
     /// The comments on the left are from Gwyddion, which writes all names but the last in the language of its
     /// user; the lines on the right are from a microscope.
-    fn of(path: &Path, head: &[u8]) -> Result<Self, ArrayError> {
-        let text = Encoding::of(head).text(head);
+    fn read(path: &Path, head: &[u8]) -> Result<Self, ArrayError> {
+        let text = Encoding::detect(head).text(head);
         let length = |name: &str, text: &str| {
             let length = text.replace(',', ".").parse::<Length>();
             length.map(|length| length.si()).map_err(|error| {
@@ -230,15 +226,10 @@ struct PointList {
 impl PointList {
     /// The coordinates of a table of three columns, if the first two form a regular grid: those of a map that
     /// is three points wide do not.
-    fn of(
-        path: &Path,
-        source: &mut (impl BufRead + Seek),
-        layout: &TableLayout,
-        gaps: bool,
-    ) -> Result<Option<Self>, ArrayError> {
+    fn find(file: &mut ArrayFile, layout: &TableLayout, gaps: bool) -> Result<Option<Self>, ArrayError> {
         let (mut axes, mut n_points) = ([Vec::new(), Vec::new()], 0_usize);
         let mut is_list = true;
-        table::rows(path, source, layout, gaps, |_, point| {
+        table::rows(file, layout, gaps, |_, point| {
             n_points += 1;
             for (axis, &coordinate) in axes.iter_mut().zip(point) {
                 let place = axis.partition_point(|other: &f64| *other < coordinate);
@@ -292,8 +283,10 @@ mod tests {
     fn read_text(text: &str) -> (HeightGrid, Vec<(usize, usize, f64)>) {
         let mut points = Vec::new();
         let grid = read(
-            Path::new("m.csv"),
-            &mut Cursor::new(text),
+            &mut ArrayFile {
+                path: Path::new("m.csv"),
+                source: &mut Cursor::new(text),
+            },
             &Preparation::default(),
             &mut |line| {
                 let heights = line.heights.iter().enumerate();
@@ -324,8 +317,10 @@ mod tests {
     /// Reads a text as a map of no particular size.
     fn refusal(text: &str, preparation: &Preparation) -> Option<String> {
         let found = read(
-            Path::new("m.csv"),
-            &mut Cursor::new(text),
+            &mut ArrayFile {
+                path: Path::new("m.csv"),
+                source: &mut Cursor::new(text),
+            },
             preparation,
             &mut |_| Ok(()),
         );

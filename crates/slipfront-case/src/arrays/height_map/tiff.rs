@@ -1,9 +1,7 @@
 //! Heights as the grey levels of a TIFF picture with 16 bits or more, in strips or tiles. The top row lies at
 //! the largest y.
 
-use std::io::{BufRead, Seek};
 use std::ops::Range;
-use std::path::Path;
 
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
@@ -11,6 +9,7 @@ use tiff::{ColorType, TiffError};
 
 use super::grid::{HeightGrid, Line, Take, points};
 use super::image::{beside_grey, in_colours, too_coarse};
+use crate::arrays::array_file::ArrayFile;
 use crate::arrays::error::{ArrayError, broken, contents_error};
 
 /// The largest strip or tile, in bytes.
@@ -23,11 +22,8 @@ const WHITE_IS_ZERO: u32 = 0;
 /// Value of the tag for rows from the top, each from the left.
 const TOP_LEFT: u16 = 1;
 
-pub(super) fn read(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
-    take: &mut Take,
-) -> Result<HeightGrid, ArrayError> {
+pub(super) fn read(file: &mut ArrayFile, take: &mut Take) -> Result<HeightGrid, ArrayError> {
+    let path = file.path;
     let unreadable = |error: TiffError| match error {
         TiffError::IoError(source) if source.kind() != std::io::ErrorKind::UnexpectedEof => {
             ArrayError::read(path)(source)
@@ -44,7 +40,7 @@ pub(super) fn read(
     let mut limits = Limits::default();
     limits.decoding_buffer_size = PIECE_MAX_BYTES;
     limits.intermediate_buffer_size = PIECE_MAX_BYTES;
-    let decoder = Decoder::new(source).map_err(unreadable)?;
+    let decoder = Decoder::new(&mut *file.source).map_err(unreadable)?;
     let mut decoder = decoder.with_limits(limits);
     let color = decoder.colortype().map_err(unreadable)?;
     match color {
@@ -100,13 +96,7 @@ pub(super) fn read(
             })?;
         }
     }
-    Ok(HeightGrid {
-        points,
-        top_first: true,
-        pixel: None,
-        height_unit: None,
-        notes: Vec::new(),
-    })
+    Ok(HeightGrid::without_units(points, true))
 }
 
 /// Numbers of a strip or tile.

@@ -6,7 +6,7 @@
 //! y, so that no file is the mirror image of another.
 
 use std::collections::BTreeMap;
-use std::io::{BufRead, Read, Seek};
+use std::io::Read;
 use std::path::Path;
 
 use flate2::read::DeflateDecoder;
@@ -14,7 +14,9 @@ use md5::{Digest, Md5};
 use rawzip::{CompressionMethod, RECOMMENDED_BUFFER_SIZE, ZipArchive};
 
 use super::grid::{HeightGrid, Line, Take, points};
+use crate::arrays::array_file::ArrayFile;
 use crate::arrays::error::{ArrayError, broken, contents_error};
+use crate::arrays::number_type::NumberType;
 use crate::xml::{self, Piece};
 use slipfront_base::text::truncated;
 
@@ -26,15 +28,11 @@ const NODES_MAX: usize = 1 << 16;
 const PATH_MAX_BYTES: usize = 80;
 
 /// Reads the points of a file. If a map may have gaps, unmeasured points become NaN.
-pub(super) fn read(
-    path: &Path,
-    source: &mut (impl BufRead + Seek),
-    has_gaps: bool,
-    take: &mut Take,
-) -> Result<HeightGrid, ArrayError> {
+pub(super) fn read(file: &mut ArrayFile, has_gaps: bool, take: &mut Take) -> Result<HeightGrid, ArrayError> {
+    let path = file.path;
     let refuse = |detail: &str| broken(path, ".x3p", detail);
     let mut buffer = vec![0; RECOMMENDED_BUFFER_SIZE];
-    let archive = ZipArchive::from_seekable(source, &mut buffer);
+    let archive = ZipArchive::from_seekable(&mut *file.source, &mut buffer);
     let archive = archive.map_err(|error| refuse(&format!("it is no zip archive ({error})")))?;
     let mut entry = |name: &str, read: &mut dyn FnMut(&mut dyn Read) -> Result<(), ArrayError>| {
         let said =
@@ -75,7 +73,7 @@ pub(super) fn read(
         read.map(|_| ())
             .map_err(|error| refuse(&format!("`main.xml`: {error}")))
     })?;
-    let description = Description::of(path, &xml)?;
+    let description = Description::parse(path, &xml)?;
     let [nx, ny] = description.points;
     let mut valid = Vec::new();
     if let Some(name) = &description.valid {
@@ -89,8 +87,7 @@ pub(super) fn read(
             .get(point / 8)
             .is_none_or(|bits| bits >> (point % 8) & 1 == 1)
     };
-    let number = description.number;
-    let mut bytes = vec![0; number.size() * nx];
+    let mut bytes = vec![0; description.number.size * nx];
     let mut heights = vec![0.0; nx];
     let mut checksum = Md5::new();
     entry(&description.data, &mut |stored| {
@@ -100,17 +97,14 @@ pub(super) fn read(
                 checksum.update(&bytes);
             }
             read.map_err(|error| refuse(&format!("`{}`: {error}", description.data)))?;
-            for (column, bytes) in bytes.chunks_exact(number.size()).enumerate() {
-                heights[column] = match is_valid(row * nx + column) {
-                    true => number.decode(bytes) * description.increment + description.offset,
+            description.number.decode(&bytes, &mut heights);
+            for (column, height) in heights.iter_mut().enumerate() {
+                *height = match is_valid(row * nx + column) {
+                    true => *height * description.increment + description.offset,
                     false => f64::NAN,
                 };
             }
-            take(&Line {
-                row,
-                column: 0,
-                heights: &heights,
-            })?;
+            take(&Line::of_row(row, &heights))?;
         }
         Ok(())
     })?;
@@ -158,42 +152,11 @@ fn valid_points(
     }
 }
 
-/// Type of the numbers that store heights.
-#[derive(Clone, Copy)]
-enum HeightType {
-    Int16,
-    Int32,
-    Float32,
-    Float64,
-}
-
-impl HeightType {
-    fn size(self) -> usize {
-        match self {
-            Self::Int16 => 2,
-            Self::Int32 | Self::Float32 => 4,
-            Self::Float64 => 8,
-        }
-    }
-
-    fn decode(self, bytes: &[u8]) -> f64 {
-        let mut little = [0; 8];
-        little[..bytes.len()].copy_from_slice(bytes);
-        let bits = u64::from_le_bytes(little);
-        match self {
-            Self::Int16 => f64::from(bits as u16 as i16),
-            Self::Int32 => f64::from(bits as u32 as i32),
-            Self::Float32 => f64::from(f32::from_bits(bits as u32)),
-            Self::Float64 => f64::from_bits(bits),
-        }
-    }
-}
-
 /// Contents of `main.xml`.
 struct Description {
     points: [usize; 2],
     pixel: [f64; 2],
-    number: HeightType,
+    number: NumberType,
     /// Height of the stored number 1, m; `offset` is added.
     increment: f64,
     offset: f64,
@@ -218,7 +181,7 @@ impl Description {
         })
     }
 
-    fn of(path: &Path, xml: &str) -> Result<Self, ArrayError> {
+    fn parse(path: &Path, xml: &str) -> Result<Self, ArrayError> {
         let refuse = |detail: &str| broken(path, ".x3p", detail);
         let texts = texts(xml).map_err(|detail| refuse(&detail))?;
         let text = |place: &str| {
@@ -272,18 +235,7 @@ impl Description {
         Ok(Self {
             points: points(path, ".x3p", size("X")?, size("Y")?)?,
             pixel: [increment("CX")?, increment("CY")?],
-            number: match wanted("Record1/Axes/CZ/DataType")? {
-                "I" => HeightType::Int16,
-                "L" => HeightType::Int32,
-                "F" => HeightType::Float32,
-                "D" => HeightType::Float64,
-                other => {
-                    return Err(refuse(&format!(
-                        "its heights are of unknown type {}",
-                        truncated(other)
-                    )));
-                }
-            },
+            number: number_type(wanted("Record1/Axes/CZ/DataType")?).map_err(|detail| refuse(&detail))?,
             increment: text(step).map_or(Ok(1.0), |text| above_0(step, text))?,
             offset: text(offset).map_or(Ok(0.0), |text| number(offset, text))?,
             data: data.to_owned(),
@@ -291,6 +243,19 @@ impl Description {
             checksum: text("Record3/DataLink/MD5ChecksumPointData").map(str::to_owned),
         })
     }
+}
+
+/// The type of the stored heights, by its letter in `main.xml`.
+fn number_type(letter: &str) -> Result<NumberType, String> {
+    let name = match letter {
+        "I" => "<i2",
+        "L" => "<i4",
+        "F" => "<f4",
+        "D" => "<f8",
+        _ => "",
+    };
+    NumberType::from_name(name)
+        .ok_or_else(|| format!("its heights are of unknown type {}", truncated(letter)))
 }
 
 /// The texts of the elements below the root by their paths, such as `Record1/Axes/CX/AxisType`; of elements

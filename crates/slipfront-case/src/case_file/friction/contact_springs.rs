@@ -2,18 +2,14 @@
 
 use slipfront::{AfterBreak, ContactSprings};
 
+use crate::case_file::synonyms::{Synonyms, synonyms};
 use slipfront_base::number_format::four_digits;
 
-pub(super) const SYNONYMS: &[(&str, &str)] = &[
-    ("contact_stiffness", ADVICE),
-    ("tangential_stiffness", ADVICE),
-    ("k_t", ADVICE),
-    ("contact_springs", ADVICE),
-    ("asperities", ADVICE),
-    ("junctions", ADVICE),
-];
-const ADVICE: &str = "springs in contact are `friction.contact` = \"springs\", of stiffness `friction.contact_stiffness_star`, or \
-     `friction.contact_stiffness_per_area` with its unit";
+pub(super) const SYNONYMS: Synonyms = synonyms! {
+    "contact_stiffness" "tangential_stiffness" "k_t" "contact_springs" "asperities" "junctions" =>
+        "springs in contact are `friction.contact` = \"springs\", of stiffness \
+        `friction.contact_stiffness_star`, or `friction.contact_stiffness_per_area` with its unit";
+};
 
 /// Reason why laws with varying thresholds do not apply to springs in contact.
 pub(super) const ALONE: &str = "with `contact` = \"springs\" a spring holds the block and breaks at a constant threshold; leave \

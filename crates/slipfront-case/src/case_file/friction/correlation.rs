@@ -1,13 +1,11 @@
 //! `correlation_length`: random coefficients that are correlated over a length.
 
-pub(super) const SYNONYMS: &[(&str, &str)] = &[
-    ("correlation", ADVICE),
-    ("correlated", ADVICE),
-    ("autocorrelation_length", ADVICE),
-    ("patch_size", ADVICE),
-    ("xi", ADVICE),
-];
-const ADVICE: &str = "the correlation length of coefficients is `friction.correlation_length` = \"5 um\"";
+use crate::case_file::synonyms::{Synonyms, synonyms};
+
+pub(super) const SYNONYMS: Synonyms = synonyms! {
+    "correlation" "correlated" "autocorrelation_length" "patch_size" "xi" =>
+        "the correlation length of coefficients is `friction.correlation_length` = \"5 um\"";
+};
 
 /// Reason why a correlation length does not apply where no coefficient is drawn.
 pub(super) const GIVEN: &str =

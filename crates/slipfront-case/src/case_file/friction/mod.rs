@@ -25,8 +25,9 @@ use super::key::{
     quantity, whole, within,
 };
 use super::length_of_a_block::LengthOfABlock;
-use super::probe::names_of;
-use super::values::word;
+use super::serde_names::names_of;
+use super::synonyms::Synonyms;
+use super::values::is_default;
 use super::words::FrictionAlong;
 use crate::key_rows;
 use crate::quantity::{Length, Pressure, StiffnessPerArea};
@@ -43,7 +44,7 @@ const MAX_SEED: u64 = i64::MAX.unsigned_abs();
 const MAX_R_STAR: f64 = 10.0;
 
 /// Words that people try first, with the advice on each, by law.
-pub(super) const SYNONYMS: &[&[(&str, &str)]] = &[
+pub(super) const SYNONYMS: [Synonyms; 6] = [
     correlation::SYNONYMS,
     weakening::SYNONYMS,
     ageing::SYNONYMS,
@@ -87,13 +88,6 @@ pub enum AfterBreak {
     Slide,
 }
 
-impl AfterBreak {
-    /// Whether a printed case may omit the key.
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
 key_rows! {
     /// `[friction]`: the law and the local coefficients (Eqs. 1 and 4).
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -101,11 +95,10 @@ key_rows! {
     pub struct Friction from FrictionKeys {
         /// Interpretation of Eq. 4, or rate-and-state friction instead of it; `"reversal"` and `"literal"`
         /// are for comparison.
-        #[serde(deserialize_with = "word")]
         pub law: Law = key("\"projection\"", KeyKind::Words(names_of::<Law>)).paper("Eq. 4"),
         /// Direction in which friction acts: the plane of a slider that lies on its substrate, or x alone, of
         /// a sheet that stands upright on it, whose blocks move freely along y.
-        #[serde(deserialize_with = "word", skip_serializing_if = "FrictionAlong::is_plane")]
+        #[serde(skip_serializing_if = "is_default")]
         pub along: FrictionAlong = key("\"plane\"", KeyKind::Words(names_of::<FrictionAlong>))
             .note("See [upright sheets](../model.md#an-upright-sheet)."),
         /// Mean static coefficient. It is the scale of all forces, even if a field is given.
@@ -118,10 +111,10 @@ key_rows! {
                 /// Ratio of the mean kinetic to the mean static coefficient.
                 r_star: f64 => RStar = key("0.5", number(within(0.0, MAX_R_STAR), "it is the ratio of the kinetic to the static coefficient"))
                     .star(StarUnit::One)
-                    .or("mu_kinetic").paper("R*").title("friction ratio", "R*", ""),
+                    .paper("R*").title("friction ratio", "R*", ""),
                 /// Mean kinetic coefficient, instead of `r_star`.
                 mu_kinetic: f64 => MuKinetic = key("", KeyKind::Special("0 to 10 times `mu_static`"))
-                    .or("r_star").paper("mean of mu_k")
+                    .paper("mean of mu_k")
                     .title("mean kinetic coefficient", "\u{3bc}\u{2096}", ""),
             }
         ]
@@ -164,20 +157,19 @@ key_rows! {
         pub healing_time_star: Option<f64> = key("", TIME_STAR).star(StarUnit::Time)
             .title("healing time", "t\u{2095}*", ""),
         /// Contact below the threshold: rigid, or a spring that breaks at the threshold.
-        #[serde(deserialize_with = "word")]
         pub contact: ContactModel = key("\"rigid\"", KeyKind::Words(names_of::<ContactModel>)),
         /// Stiffness of the contact spring of a block; `contact = "springs"` needs this key or the next.
         pub contact_stiffness_star: Option<f64> = key("", number(above(0.0, 1e3),
             "it is relative to E h, with the thickness h, and a spring between blocks has 0.75"))
-                .star(StarUnit::SpringOfBlock).or("contact_stiffness_per_area")
+                .star(StarUnit::SpringOfBlock).or(&["contact_stiffness_per_area"])
             .paper("k_t/(E h)").title("contact stiffness", "k\u{209c}*", ""),
         /// Stiffness of the contact springs per area.
         pub contact_stiffness_per_area: Option<StiffnessPerArea> = key("", STIFFNESS_PER_AREA)
-            .or("contact_stiffness_star")
+            .or(&["contact_stiffness_star"])
             .title("contact stiffness", "K\u{209c}", "N/m\u{b3}"),
         /// Friction of a block whose spring has broken: the spring forms again at once, without stress, or
         /// the block slides at its kinetic friction until the spring relaxes and holds it again.
-        #[serde(default, deserialize_with = "word", skip_serializing_if = "AfterBreak::is_default")]
+        #[serde(skip_serializing_if = "is_default")]
         pub after_break: AfterBreak = key("\"form_again\"", KeyKind::Words(names_of::<AfterBreak>))
             .note("See [springs in contact](../model.md#other-laws-of-friction)."),
         /// Whether a contact spring that re-forms has a new threshold, from the coefficient of a random block
@@ -212,35 +204,14 @@ impl Friction {
     pub(super) const KINETIC: [&str; 2] = ["r_star", "sigma_kinetic_star"];
 
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        check.value("mu_static", &self.mu_static)?;
-        self.kinetic.check(check)?;
+        self.check_values(check)?;
         if let KineticFriction::MuKinetic(mu_kinetic) = self.kinetic {
             let bounds = (Included(0.0), Included(MAX_R_STAR * self.mu_static));
             let remark = format!("at most {MAX_R_STAR} times `mu_static`");
             check.number_within("mu_kinetic", mu_kinetic, bounds, &remark)?;
         }
-        check.value("sigma_static_star", &self.sigma_static_star)?;
-        check.value("sigma_kinetic_star", &self.sigma_kinetic_star)?;
-        check.value("seed", &self.seed)?;
-        check.value("mu_static_field", &self.mu_static_field)?;
-        check.value("mu_kinetic_field", &self.mu_kinetic_field)?;
-        check.value("adhesion", &self.adhesion)?;
-        check.value("adhesion_kinetic", &self.adhesion_kinetic)?;
-        check.value("correlation_length", &self.correlation_length)?;
-        if let Some(velocity) = &self.velocity {
-            velocity.check(check)?;
-        }
-        if let Some(ageing) = &self.ageing {
-            ageing.check(check)?;
-        }
         if let Some(slip_weakening) = &self.slip_weakening {
-            slip_weakening.check(check)?;
-        }
-        check.value("healing_time_star", &self.healing_time_star)?;
-        check.value("contact_stiffness_star", &self.contact_stiffness_star)?;
-        check.value("contact_stiffness_per_area", &self.contact_stiffness_per_area)?;
-        for (key, value) in self.rate_and_state() {
-            check.value(key, &value)?;
+            slip_weakening.expect_one_length(check)?;
         }
         self.check_together(check)
     }
@@ -426,7 +397,7 @@ impl Friction {
                 self.contact_stiffness_per_area.is_some(),
             ),
             ("redraw", self.redraw),
-            ("after_break", !self.after_break.is_default()),
+            ("after_break", !is_default(&self.after_break)),
         ];
         let has_stiffness = springs[..2].iter().any(|(_, is_set)| *is_set);
         match (self.contact, has_stiffness) {
@@ -547,21 +518,16 @@ impl Friction {
 
     /// The keys of kinetic friction, and whether they are set by the user or in code.
     fn of_kinetic(&self, check: &Check) -> [(&'static str, bool); 5] {
+        let (has_ratio, has_mean) = match self.kinetic {
+            KineticFriction::RStar(r_star) => (check.has("r_star") || r_star != DEFAULT_R_STAR, false),
+            KineticFriction::MuKinetic(_) => (check.has("r_star"), true),
+        };
+        let sigma = self.sigma_kinetic_star;
+        let has_spread = is_spread(sigma) || (check.has("sigma_kinetic_star") && sigma != 0.0);
         [
-            (
-                "r_star",
-                check.has("r_star")
-                    || matches!(self.kinetic, KineticFriction::RStar(r_star) if r_star != DEFAULT_R_STAR),
-            ),
-            (
-                "mu_kinetic",
-                matches!(self.kinetic, KineticFriction::MuKinetic(_)),
-            ),
-            (
-                "sigma_kinetic_star",
-                is_spread(self.sigma_kinetic_star)
-                    || (check.has("sigma_kinetic_star") && self.sigma_kinetic_star != 0.0),
-            ),
+            ("r_star", has_ratio),
+            ("mu_kinetic", has_mean),
+            ("sigma_kinetic_star", has_spread),
             ("mu_kinetic_field", self.mu_kinetic_field.is_some()),
             ("adhesion_kinetic", self.adhesion_kinetic.si() != 0.0),
         ]

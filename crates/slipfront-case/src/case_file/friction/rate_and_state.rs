@@ -2,30 +2,19 @@
 
 use slipfront::{Model, RateAndState};
 
+use crate::case_file::synonyms::{Synonyms, synonyms};
 use slipfront_base::number_format::four_digits;
 
 /// Number of required keys of the law, which have no default and are first.
 pub(super) const NEEDED: usize = 4;
 
-pub(super) const SYNONYMS: &[(&str, &str)] = &[
-    ("rate_and_state", ADVICE),
-    ("rsf", ADVICE),
-    ("dieterich", ADVICE),
-    ("ruina", ADVICE),
-    ("rate_state", ADVICE),
-    ("state", ADVICE),
-    ("d_c", SLIP),
-    ("dc", SLIP),
-    ("v_0", REFERENCE_SPEED),
-    ("v0", REFERENCE_SPEED),
-    (
-        "mu0",
-        "the coefficient of rate and state at its reference speed is `friction.mu_0`",
-    ),
-];
-const ADVICE: &str = "rate and state is `friction.law` = \"rate_and_state\"";
-const SLIP: &str = "the slip of rate and state is `friction.d_c_star`";
-const REFERENCE_SPEED: &str = "the reference speed of rate and state is `friction.v_0_star`";
+pub(super) const SYNONYMS: Synonyms = synonyms! {
+    "rate_and_state" "rsf" "dieterich" "ruina" "rate_state" "state" =>
+        "rate and state is `friction.law` = \"rate_and_state\"";
+    "d_c" "dc" => "the slip of rate and state is `friction.d_c_star`";
+    "v_0" "v0" => "the reference speed of rate and state is `friction.v_0_star`";
+    "mu0" => "the coefficient of rate and state at its reference speed is `friction.mu_0`";
+};
 
 /// Reason why other keys do not apply to this law.
 pub(super) const ALONE: &str = "`law` = \"rate_and_state\" has no static and kinetic coefficients, and already depends on speed \

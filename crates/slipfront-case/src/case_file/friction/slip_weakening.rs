@@ -3,23 +3,20 @@
 use serde::{Deserialize, Serialize};
 use slipfront::{Scales, SlipWeakening};
 
-use crate::case_file::check::Check;
+use crate::case_file::check::{Check, Checked};
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{KeyKind, SLIP_STAR, StarUnit, key, quantity, within};
+use crate::case_file::synonyms::{Synonyms, synonyms};
 use crate::key_rows;
 use crate::quantity::Length;
 use slipfront_base::number_format::four_digits;
 
-pub(super) const SYNONYMS: &[(&str, &str)] = &[
-    ("slip_weakening_length", ADVICE),
-    ("weakening_length", ADVICE),
-    ("fracture_energy", ADVICE),
-    (
-        "healing_time",
-        "the time of healing is `friction.healing_time_star`, in t*",
-    ),
-];
-const ADVICE: &str = "slip weakening is `friction.slip_weakening` = { length = \"0.5 um\" }, with the fracture energy (S - K) length/2 of a block";
+pub(super) const SYNONYMS: Synonyms = synonyms! {
+    "slip_weakening_length" "weakening_length" "fracture_energy" =>
+        "slip weakening is `friction.slip_weakening` = { length = \"0.5 um\" }, with the fracture energy (S \
+        - K) length/2 of a block";
+    "healing_time" => "the time of healing is `friction.healing_time_star`, in t*";
+};
 
 /// Reason why other laws cannot be combined with slip weakening.
 pub(super) const ALONE: &str = "it cannot be combined with `slip_weakening`; leave one of them out";
@@ -31,27 +28,23 @@ key_rows! {
     /// `slip_weakening`: the slip over which strength falls from the static to the kinetic threshold.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
-    pub struct SlipWeakeningLength {
+    pub struct SlipWeakeningLength checked {
         /// Slip D_c, m.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        pub length: Option<Length> = key("", LENGTH),
+        pub length: Option<Length> = key("", quantity("m", within(1e-18, 1e3))),
         /// Slip D_c in units of P mu_s l^2/(E h).
-        #[serde(skip_serializing_if = "Option::is_none")]
         pub length_star: Option<f64> = key("", SLIP_STAR).star(StarUnit::Displacement),
     }
 }
 
-const LENGTH: KeyKind = quantity("m", within(1e-18, 1e3));
-
 impl SlipWeakeningLength {
-    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+    /// Refuses no length, and two.
+    pub(super) fn expect_one_length(&self, check: &Check) -> Result<(), CaseError> {
         if self.length.is_some() == self.length_star.is_some() {
             return check.refuse("slip_weakening", |key| {
                 format!("`{key}` needs one length: `length` with its unit, or `length_star`")
             });
         }
-        check.value_of(&LENGTH, "slip_weakening.length", &self.length)?;
-        check.value_of(&SLIP_STAR, "slip_weakening.length_star", &self.length_star)
+        Ok(())
     }
 
     /// The law of the model.

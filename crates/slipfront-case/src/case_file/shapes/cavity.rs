@@ -6,44 +6,25 @@ use serde::{Deserialize, Serialize};
 use slipfront::surface;
 
 use super::outlined::{Blocks, Outlined};
-use crate::case_file::check::Check;
+use crate::case_file::check::{Check, Checked};
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{COORDINATE, COVERAGE, DEGREES, Key, KeyKind, SIZE, key};
+use crate::case_file::synonyms::{Synonyms, synonyms};
 use crate::case_file::values::{Pair, length};
 use crate::key_rows;
 use crate::quantity::Length;
 
-pub(super) const SYNONYMS: &[(&str, &str)] = &[
-    ("circle", CIRCLE),
-    ("circular", CIRCLE),
-    ("dimple", CIRCLE),
-    (
-        "dimples",
-        "many dimples are one `shape` = \"cavity\" with `array` = [4, 4]",
-    ),
-    ("disc", CIRCLE),
-    ("disk", CIRCLE),
-    ("hole", CIRCLE),
-    ("pit", CIRCLE),
-    ("pocket", CIRCLE),
-    ("sphere", CIRCLE),
-    (
-        "ellipse",
-        "an ellipse is `shape` = \"cavity\" with `w` between -1 and 1",
-    ),
-    (
-        "triangle",
-        "a triangle is `shape` = \"cavity\" with `s` = 2 and `w` between -1/2 and 1/2, or a \"polygon\"",
-    ),
-    (
-        "square",
-        "a square is `shape` = \"cavity\" with `s` = 3 and `w` between -1/3 and 1/3, or a \"polygon\"",
-    ),
-    ("radius", RADIUS),
-    ("diameter", RADIUS),
-];
-const CIRCLE: &str = "a circle is `shape` = \"cavity\" with `coverage`, or with `lambda`, its radius";
-const RADIUS: &str = "the radius of a circle is `lambda`";
+pub(super) const SYNONYMS: Synonyms = synonyms! {
+    "circle" "circular" "dimple" "disc" "disk" "hole" "pit" "pocket" "sphere" =>
+        "a circle is `shape` = \"cavity\" with `coverage`, or with `lambda`, its radius";
+    "dimples" => "many dimples are one `shape` = \"cavity\" with `array` = [4, 4]";
+    "ellipse" => "an ellipse is `shape` = \"cavity\" with `w` between -1 and 1";
+    "triangle" =>
+        "a triangle is `shape` = \"cavity\" with `s` = 2 and `w` between -1/2 and 1/2, or a \"polygon\"";
+    "square" =>
+        "a square is `shape` = \"cavity\" with `s` = 3 and `w` between -1/3 and 1/3, or a \"polygon\"";
+    "radius" "diameter" => "the radius of a circle is `lambda`";
+};
 
 key_rows! {
     /// A cavity with the outline of Eq. 17.
@@ -61,10 +42,10 @@ key_rows! {
             /// Size of the cavity: `coverage` or `lambda`.
             pub size: CavitySize or "a cavity needs a size: `coverage = 10` (percent of the area) or `lambda = \"8 um\"`" {
                 /// Size: total coverage of all copies, in percent of the whole area.
-                coverage: f64 => Coverage = key("", COVERAGE).or("lambda").paper("A* (Eq. 18, D5)")
+                coverage: f64 => Coverage = key("", COVERAGE).paper("A* (Eq. 18, D5)")
                     .title("texture coverage", "A*", "%"),
                 /// Size: the length of Eq. 17, the radius of a circle. A cavity needs one of these two keys.
-                lambda: Length => Lambda = key("", SIZE).or("coverage").paper("lambda")
+                lambda: Length => Lambda = key("", SIZE).paper("lambda")
                     .title("cavity size", "\u{3bb}", "m"),
             }
         ]
@@ -90,7 +71,7 @@ pub enum Center {
 
 impl Cavity {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        check.value("s", &u64::from(self.s))?;
+        self.check_values(check)?;
         let (most, remark) = match self.s {
             1 => (Excluded(1.0), "at 1 the cavity is a line".to_owned()),
             s => (
@@ -99,16 +80,18 @@ impl Cavity {
             ),
         };
         let least = most.map(|most: f64| -most);
-        check.number_within("w", self.w, (least, most), &remark)?;
-        self.size.check(check)?;
-        if let Center::At(center) = &self.center {
-            let mut lengths = center.iter();
-            lengths.try_for_each(|length| check.value_of(&COORDINATE, "center", length))?;
-        }
-        check.value("rotate", &self.rotate)
+        check.number_within("w", self.w, (least, most), &remark)
     }
 }
 
+impl Checked for Center {
+    fn complaint(&self, _: &KeyKind) -> Option<String> {
+        match self {
+            Self::Middle => None,
+            Self::At(center) => center.iter().find_map(|length| length.complaint(&COORDINATE)),
+        }
+    }
+}
 impl Outlined for Cavity {
     fn noun(&self) -> &'static str {
         "dimple"

@@ -7,25 +7,16 @@ use super::outlined::{Blocks, Outlined};
 use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{COORDINATE, COVERAGE, Key, KeyKind, SIZE, key};
-use crate::case_file::probe::names_of;
-use crate::case_file::values::word;
+use crate::case_file::serde_names::names_of;
+use crate::case_file::synonyms::{Synonyms, synonyms};
 use crate::key_rows;
 use crate::quantity::Length;
 
-pub(super) const SYNONYMS: &[(&str, &str)] = &[
-    ("line", GROOVE),
-    ("stripe", GROOVE),
-    ("channel", GROOVE),
-    (
-        "groove_across",
-        "a groove is `shape` = \"groove\" with `orientation` = \"across\"",
-    ),
-    (
-        "groove_along",
-        "a groove is `shape` = \"groove\" with `orientation` = \"along\"",
-    ),
-];
-const GROOVE: &str = "a straight one is `shape` = \"groove\" with `coverage` or `width`";
+pub(super) const SYNONYMS: Synonyms = synonyms! {
+    "line" "stripe" "channel" => "a straight one is `shape` = \"groove\" with `coverage` or `width`";
+    "groove_across" => "a groove is `shape` = \"groove\" with `orientation` = \"across\"";
+    "groove_along" => "a groove is `shape` = \"groove\" with `orientation` = \"along\"";
+};
 
 key_rows! {
     /// A straight groove through the whole slider, half-open: it includes its lower edge, but not its upper
@@ -34,27 +25,19 @@ key_rows! {
     #[serde(try_from = "GrooveKeys", into = "GrooveKeys")]
     pub struct Groove from GrooveKeys {
         /// Orientation of the groove: along y (across the x axis), or along x.
-        #[serde(deserialize_with = "word")]
         pub orientation: Orientation = key("\"across\"", KeyKind::Words(names_of::<Orientation>)),
         [
             /// Size of the groove: `coverage` or `width`.
             pub size: GrooveSize or "a groove needs a size: `coverage = 10` (percent of the area) or `width = \"5 um\"`" {
                 /// Size: total coverage of all copies, in percent of the whole area.
-                coverage: f64 => Coverage = key("", COVERAGE).or("width").paper("A*")
+                coverage: f64 => Coverage = key("", COVERAGE).paper("A*")
                     .title("texture coverage", "A*", "%"),
                 /// Size: the width. A groove needs one of these two keys.
-                width: Length => Width = key("", SIZE).or("coverage").title("groove width", "", "m"),
+                width: Length => Width = key("", SIZE).title("groove width", "", "m"),
             }
         ]
         /// Distance between the centre lines of groove and slider.
         pub offset: Length = key("\"0 um\"", COORDINATE).title("groove offset", "", "m"),
-    }
-}
-
-impl Groove {
-    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        self.size.check(check)?;
-        check.value("offset", &self.offset)
     }
 }
 

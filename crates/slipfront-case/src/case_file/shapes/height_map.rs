@@ -6,19 +6,17 @@ use crate::case_file::check::Check;
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{COORDINATE, COVERAGE, Key, KeyKind, SIZE, key};
 use crate::case_file::pattern::{PITCH, Pitch};
-use crate::case_file::probe::names_of;
-use crate::case_file::values::{WordOrNumber, some_word};
+use crate::case_file::serde_names::names_of;
+use crate::case_file::synonyms::{Synonyms, synonyms};
+use crate::case_file::values::WordOrNumber;
 use crate::key_rows;
 use crate::quantity::Length;
 use crate::table::{DecimalSign, FieldSeparator};
 
-pub(super) const SYNONYMS: &[(&str, &str)] = &[
-    ("topography", HEIGHT_MAP),
-    ("heightmap", HEIGHT_MAP),
-    ("heights", HEIGHT_MAP),
-];
-const HEIGHT_MAP: &str =
-    "measured heights are `shape` = \"height_map\" with `file` and `bearing_percent` or `depth`";
+pub(super) const SYNONYMS: Synonyms = synonyms! {
+    "topography" "heightmap" "heights" =>
+        "measured heights are `shape` = \"height_map\" with `file` and `bearing_percent` or `depth`";
+};
 
 key_rows! {
     /// A measured surface stretched over the slider: parts below the contact height are textured.
@@ -32,11 +30,11 @@ key_rows! {
             pub bearing: Bearing or "a height map needs what touches: `bearing_percent = 60` (percent of the area, the highest parts) or \
                                      `depth = \"0.5 um\"` (below the highest)" {
                 /// Percentage of the area in contact, starting with the highest parts.
-                bearing_percent: f64 => Percent = key("", COVERAGE).or("depth")
+                bearing_percent: f64 => Percent = key("", COVERAGE)
                     .title("bearing area", "", "%"),
                 /// Depth below the reference down to which a block is in contact. A map needs one of these
                 /// two keys.
-                depth: Length => Depth = key("", SIZE).or("bearing_percent")
+                depth: Length => Depth = key("", SIZE)
                     .title("depth of contact", "", "m"),
             }
         ]
@@ -47,13 +45,10 @@ key_rows! {
         /// Distance between neighbouring points, if the file does not contain it.
         pub pixel_size: Option<Pitch> = key("", PITCH),
         /// Surface that is subtracted from the heights first: the least-squares plane.
-        #[serde(default, deserialize_with = "some_word")]
         pub level: Option<Level> = key("", KeyKind::Words(names_of::<Level>)),
         /// Decimal sign of a text table.
-        #[serde(default, deserialize_with = "some_word")]
         pub decimal: Option<DecimalSign> = key("", KeyKind::Words(names_of::<DecimalSign>)).without("found"),
         /// Separator of the numbers in a text table.
-        #[serde(default, deserialize_with = "some_word")]
         pub separator: Option<FieldSeparator> = key("", KeyKind::Words(names_of::<FieldSeparator>)).without("found"),
         /// Value of points that were not measured, a number or `"nan"`; a block has the mean of its other
         /// points.
@@ -120,9 +115,7 @@ impl HeightMap {
     }
 
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        check.value("file", &self.file)?;
-        self.bearing.check(check)?;
-        check.value("reference", &self.reference)?;
+        self.check_values(check)?;
         if self.reference.is_some() && matches!(self.bearing, Bearing::Percent(_)) {
             return check.refuse("reference", |key| {
                 format!(
@@ -130,8 +123,6 @@ impl HeightMap {
                 )
             });
         }
-        check.value("height_unit", &self.height_unit)?;
-        let mut lengths = self.pixel_size.iter().flat_map(Pitch::lengths);
-        lengths.try_for_each(|length| check.value_of(&SIZE, "pixel_size", length))
+        Ok(())
     }
 }

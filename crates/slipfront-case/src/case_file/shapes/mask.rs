@@ -2,24 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::case_file::check::Check;
+use crate::case_file::check::{Check, Checked};
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{KeyKind, between, key, number};
+use crate::case_file::synonyms::{Synonyms, synonyms};
 use crate::key_rows;
 
-pub(super) const SYNONYMS: &[(&str, &str)] = &[
-    (
-        "image",
-        "an image is `shape` = \"mask\" with `file` = \"mask.png\"",
-    ),
-    ("png", "an image is `shape` = \"mask\" with `file` = \"mask.png\""),
-];
+pub(super) const SYNONYMS: Synonyms = synonyms! {
+    "image" "png" => "an image is `shape` = \"mask\" with `file` = \"mask.png\"";
+};
 
 key_rows! {
     /// An image or array stretched over the slider.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
-    pub struct Mask {
+    pub struct Mask checked {
         /// Image, stretched over the slider with its top row at the largest y, with dark pixels textured; or
         /// an array of 0 and 1 of shape (ny, nx), with 1 textured.
         pub file: String = key("", KeyKind::File(&["png", "npy"])),
@@ -33,11 +30,6 @@ key_rows! {
 pub const DEFAULT_THRESHOLD: f64 = 0.5;
 
 impl Mask {
-    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        check.value("file", &self.file)?;
-        check.value("threshold", &self.threshold)
-    }
-
     /// Reason why a mask covers no block.
     pub(super) const EMPTY: &str =
         "no pixel at the centre of a block is dark, and no number of an array is 1; look at its file";

@@ -12,6 +12,8 @@ mod outlined;
 mod polygon;
 
 use serde::Serialize;
+use toml::Spanned;
+use toml::de::DeValue;
 
 pub use self::cavity::{Cavity, CavitySize, Center};
 pub use self::drawing::Drawing;
@@ -22,28 +24,12 @@ pub(crate) use self::outlined::{Blocks, Outlined};
 pub use self::polygon::Polygon;
 use super::check::Check;
 use super::error::CaseError;
-use super::key::{Key, joined};
-use super::pattern::Pattern;
-
-/// Joins the keys of a shape and the keys common to all shapes.
-macro_rules! keys {
-    ($shape:ident) => {
-        &joined::<{ $shape::KEYS.len() + Pattern::KEYS.len() }>($shape::KEYS, Pattern::KEYS)
-    };
-}
-
-/// The names of the shapes and their keys, in the order of the documentation.
-pub(super) const ALL: [(&str, &[Key]); 6] = [
-    ("cavity", keys!(Cavity)),
-    ("groove", keys!(Groove)),
-    ("polygon", keys!(Polygon)),
-    ("mask", keys!(Mask)),
-    ("height_map", keys!(HeightMap)),
-    ("drawing", keys!(Drawing)),
-];
+use super::key_table::Section;
+use super::synonyms::Synonyms;
+use super::tables::Tables;
 
 /// Words that people try first, with the advice on each, by shape.
-pub(super) const SYNONYMS: &[&[(&str, &str)]] = &[
+pub(super) const SYNONYMS: [Synonyms; 6] = [
     cavity::SYNONYMS,
     groove::SYNONYMS,
     polygon::SYNONYMS,
@@ -70,19 +56,36 @@ pub enum Shape {
     Drawing(Drawing),
 }
 
-/// Definition of the inside of a shape.
-pub(crate) enum Inside<'a> {
-    /// The inside of an outline.
+/// Origin of the blocks of a shape.
+pub(crate) enum ShapeSource<'a> {
+    /// An outline that is known before any file is read.
     Outline(&'a dyn Outlined),
-    /// The blocks of a file.
     Mask(&'a Mask),
-    /// The heights of a file.
     HeightMap(&'a HeightMap),
-    /// The outlines of a file.
     Drawing(&'a Drawing),
 }
 
 impl Shape {
+    /// Reads the shape of a section from the table with its keys; none if no shape has the name of the
+    /// section.
+    pub(super) fn read<'i>(
+        tables: &Tables<'_, 'i>,
+        section: &Section,
+        table: Spanned<DeValue<'i>>,
+        header: &str,
+    ) -> Result<Option<Self>, CaseError> {
+        let of_shape = Some(section);
+        Ok(Some(match section.name {
+            "cavity" => Self::Cavity(tables.read_keys(table, header, of_shape)?),
+            "groove" => Self::Groove(tables.read_keys(table, header, of_shape)?),
+            "polygon" => Self::Polygon(tables.read_keys(table, header, of_shape)?),
+            "mask" => Self::Mask(tables.read_keys(table, header, of_shape)?),
+            "height_map" => Self::HeightMap(tables.read_keys(table, header, of_shape)?),
+            "drawing" => Self::Drawing(tables.read_keys(table, header, of_shape)?),
+            _ => return Ok(None),
+        }))
+    }
+
     /// Name of the shape in the file.
     pub(super) fn name(&self) -> &'static str {
         match self {
@@ -95,23 +98,23 @@ impl Shape {
         }
     }
 
-    /// Definition of the inside of the shape.
-    pub(crate) fn form(&self) -> Inside<'_> {
+    /// Returns the origin of the blocks of the shape.
+    pub(crate) fn source(&self) -> ShapeSource<'_> {
         match self {
-            Self::Cavity(cavity) => Inside::Outline(cavity),
-            Self::Groove(groove) => Inside::Outline(groove),
-            Self::Polygon(polygon) => Inside::Outline(polygon),
-            Self::Mask(mask) => Inside::Mask(mask),
-            Self::HeightMap(map) => Inside::HeightMap(map),
-            Self::Drawing(drawing) => Inside::Drawing(drawing),
+            Self::Cavity(cavity) => ShapeSource::Outline(cavity),
+            Self::Groove(groove) => ShapeSource::Outline(groove),
+            Self::Polygon(polygon) => ShapeSource::Outline(polygon),
+            Self::Mask(mask) => ShapeSource::Mask(mask),
+            Self::HeightMap(map) => ShapeSource::HeightMap(map),
+            Self::Drawing(drawing) => ShapeSource::Drawing(drawing),
         }
     }
 
     /// Outline of the shape, if it is known before any file is read.
     pub(crate) fn outline(&self) -> Option<&dyn Outlined> {
-        match self.form() {
-            Inside::Outline(outline) => Some(outline),
-            Inside::Mask(_) | Inside::HeightMap(_) | Inside::Drawing(_) => None,
+        match self.source() {
+            ShapeSource::Outline(outline) => Some(outline),
+            _ => None,
         }
     }
 
@@ -122,23 +125,21 @@ impl Shape {
 
     /// Reason why the shape covers no block, with the keys to check.
     pub(crate) fn why_empty(&self) -> &'static str {
-        match self.form() {
-            Inside::Outline(_) | Inside::Drawing(_) => {
-                "it lies off the slider, or between the centres of blocks; look at its size and place"
-            }
-            Inside::Mask(_) => Mask::EMPTY,
-            Inside::HeightMap(map) => map.why_empty(),
+        match self {
+            Self::Mask(_) => Mask::EMPTY,
+            Self::HeightMap(map) => map.why_empty(),
+            _ => "it lies off the slider, or between the centres of blocks; look at its size and place",
         }
     }
 
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         match self {
             Self::Cavity(cavity) => cavity.check(check),
-            Self::Groove(groove) => groove.check(check),
+            Self::Groove(groove) => groove.check_values(check),
             Self::Polygon(polygon) => polygon.check(check),
-            Self::Mask(mask) => mask.check(check),
+            Self::Mask(mask) => mask.check_values(check),
             Self::HeightMap(map) => map.check(check),
-            Self::Drawing(drawing) => drawing.check(check),
+            Self::Drawing(drawing) => drawing.check_values(check),
         }
     }
 }

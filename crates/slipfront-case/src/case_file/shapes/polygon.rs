@@ -4,24 +4,24 @@ use serde::{Deserialize, Serialize};
 use slipfront::surface;
 
 use super::outlined::{Blocks, Outlined};
-use crate::case_file::check::Check;
+use crate::case_file::check::{Check, Checked};
 use crate::case_file::error::CaseError;
 use crate::case_file::key::{COORDINATE, KeyKind, key};
+use crate::case_file::synonyms::{Synonyms, synonyms};
 use crate::case_file::values::Pair;
 use crate::key_rows;
 use crate::quantity::Length;
 use slipfront_base::number_format::count;
 
-pub(super) const SYNONYMS: &[(&str, &str)] = &[(
-    "rectangle",
-    "a rectangle is `shape` = \"polygon\" with its four `points`",
-)];
+pub(super) const SYNONYMS: Synonyms = synonyms! {
+    "rectangle" => "a rectangle is `shape` = \"polygon\" with its four `points`";
+};
 
 key_rows! {
     /// The inside of a closed polygon.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
-    pub struct Polygon {
+    pub struct Polygon checked {
         /// Vertices; the even-odd rule determines the inside.
         #[serde(deserialize_with = "read_points")]
         pub points: Vec<[Length; 2]> = key("", KeyKind::Special("at least 3 pairs within 1e9 m")),
@@ -39,11 +39,17 @@ impl Polygon {
                 )
             });
         }
-        let mut lengths = self.points.iter().flatten();
-        lengths.try_for_each(|length| check.value_of(&COORDINATE, "points", length))
+        self.check_values(check)
     }
 }
 
+impl Checked for Vec<[Length; 2]> {
+    fn complaint(&self, _: &KeyKind) -> Option<String> {
+        self.iter()
+            .flatten()
+            .find_map(|length| length.complaint(&COORDINATE))
+    }
+}
 impl Outlined for Polygon {
     fn noun(&self) -> &'static str {
         "feature"

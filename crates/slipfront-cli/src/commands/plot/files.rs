@@ -35,10 +35,7 @@ pub(super) fn write(
         refuse_to_replace(out, files, own)?;
     }
     let failed = |error: std::io::Error| {
-        Failure::running(anyhow::anyhow!(
-            "cannot write pictures to {}: {error}",
-            out.display()
-        ))
+        Failure::running(format!("cannot write pictures to {}: {error}", out.display()))
     };
     make_folders(out).map_err(failed)?;
     let mut written = String::new();
@@ -61,7 +58,7 @@ pub(super) fn expect_a_folder(out: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let folder = out.with_extension("");
-    Err(Failure::input(anyhow::anyhow!(
+    Err(Failure::input(format!(
         "--out must be a folder, but {} is the name of a picture: write --out {}",
         out.display(),
         folder.display()
@@ -75,7 +72,7 @@ pub(in crate::commands) fn expect_memory(bytes: f64) -> Result<(), Failure> {
     if needed <= available {
         return Ok(());
     }
-    Err(Failure::input(anyhow::anyhow!(
+    Err(Failure::input(format!(
         "this needs about {} of memory, but {} are available to this process: allow more, in a queue for example with `--mem`",
         byte_size(needed),
         byte_size(available)
@@ -84,7 +81,7 @@ pub(in crate::commands) fn expect_memory(bytes: f64) -> Result<(), Failure> {
 
 pub(in crate::commands) fn expect_results(folder: &Path) -> Result<(), Failure> {
     if folder.is_file() {
-        return Err(Failure::input(anyhow::anyhow!(
+        return Err(Failure::input(format!(
             "{} is a file: give the folder of a finished run; a measured record is given with `plot --data`",
             folder.display()
         )));
@@ -103,7 +100,7 @@ pub(in crate::commands) fn expect_results(folder: &Path) -> Result<(), Failure> 
         ),
         Err(error) => format!("cannot read {}: {error}", path.display()),
     };
-    Err(Failure::input(anyhow::anyhow!(sentence)))
+    Err(Failure::input(sentence))
 }
 
 /// Error message for a missing folder, with the folder in `results` that was probably meant.
@@ -128,7 +125,7 @@ pub(in crate::commands) fn refuse_other_run(out: &Path) -> Result<(), Failure> {
         ),
         Err(error) => format!("cannot read {}: {error}", manifest.display()),
     };
-    Err(Failure::input(anyhow::anyhow!(sentence)))
+    Err(Failure::input(sentence))
 }
 
 /// Refuses to replace existing files in the output folder, unless they are equal. If the pictures belong to
@@ -139,7 +136,7 @@ fn refuse_to_replace(out: &Path, files: &PictureFiles, own: Option<&Inspection>)
         if let Some(sentence) = in_the_way(out, name, own)?
             && !is_same(&out.join(name))
         {
-            return Err(Failure::input(anyhow::anyhow!(sentence)));
+            return Err(Failure::input(sentence));
         }
     }
     Ok(())

@@ -153,7 +153,7 @@ impl FrictionArgs {
         if given == 0 || (runs..=most).contains(&given) {
             return Ok(());
         }
-        Err(Failure::input(anyhow::anyhow!(
+        Err(Failure::input(format!(
             "{} for {}: give --name once for each, in the same order",
             count(given, "name"),
             count(runs, "run")
@@ -173,11 +173,11 @@ impl FrictionArgs {
         let drawn = match (self.units, &self.data) {
             (Some(UnitsName::Star), Some(_)) => {
                 let sentence = "a measured record is drawn in its units: leave `--units star` out";
-                return Err(Failure::input(anyhow::anyhow!(sentence)));
+                return Err(Failure::input(sentence));
             }
             (_, Some(path)) => {
                 let mut measured = self.measured(path).map_err(Failure::input)?;
-                measured.instrument = self.instrument(measured.record.of)?;
+                measured.instrument = self.instrument(measured.record.quantity)?;
                 for note in measured.record.notes() {
                     print_message(&format!("note: {note}\n"));
                 }
@@ -220,7 +220,7 @@ impl FrictionArgs {
         };
         let keys = InstrumentKeys::load(path).map_err(Failure::input)?;
         let made = keys.instrument(friction);
-        let named = made.map_err(|error| Failure::input(anyhow::anyhow!("{}: {error}", path.display())));
+        let named = made.map_err(|error| Failure::input(format!("{}: {error}", path.display())));
         named.map(Some)
     }
 }

@@ -1,6 +1,7 @@
 //! Options on the look of pictures: their size, their file formats, and the choice of pictures.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use slipfront_case::nearest::nearest;
 use slipfront_plot::{PictureFormat, PictureLook, PictureSize};
 
@@ -28,20 +29,19 @@ pub(super) struct LookArgs {
         long = "format",
         value_name = "FORMAT",
         value_delimiter = ',',
-        default_value = "svg,png"
+        default_value = "svg,png",
+        value_parser = PossibleValuesParser::new(PictureFormat::ALL.map(PictureFormat::ending)).try_map(format_named)
     )]
-    formats: Vec<FormatName>,
+    formats: Vec<PictureFormat>,
     /// Draw only this picture, given by its file name without extension
     #[arg(long, value_name = "NAME", conflicts_with = "field")]
     picture: Option<String>,
 }
 
-/// Format of a file.
-#[derive(Clone, Copy, ValueEnum)]
-enum FormatName {
-    Svg,
-    Png,
-    Pdf,
+/// The format of files with this ending.
+fn format_named(ending: String) -> Result<PictureFormat, String> {
+    let mut all = PictureFormat::ALL.into_iter();
+    all.find(|format| format.ending() == ending).ok_or(ending)
 }
 
 /// Parses the side of a picture in mm.
@@ -64,14 +64,9 @@ impl LookArgs {
     }
 
     pub(super) fn look(&self) -> PictureLook {
-        let formats = self.formats.iter().map(|format| match format {
-            FormatName::Svg => PictureFormat::Svg,
-            FormatName::Png => PictureFormat::Png,
-            FormatName::Pdf => PictureFormat::Pdf,
-        });
         PictureLook {
             size: self.size(),
-            formats: formats.collect(),
+            formats: self.formats.clone(),
             only: self.picture.clone(),
         }
     }
@@ -94,7 +89,7 @@ impl LookArgs {
         let more =
             (names.len() > MOST_NAMES).then(|| format!("or one of {} others", names.len() - MOST_NAMES));
         let list: Vec<String> = shown.map(str::to_owned).chain(more).collect();
-        Err(Failure::input(anyhow::anyhow!(
+        Err(Failure::input(format!(
             "there is no picture {asked}{near} can be {}",
             list.join(", ")
         )))

@@ -78,7 +78,7 @@ impl PlotCommand {
         set_threads(None)?;
         self.out.as_deref().map_or(Ok(()), expect_a_folder)?;
         let look = self.look.look();
-        if let Some(project) = project::of(&self.folders)? {
+        if let Some(project) = project::find(&self.folders)? {
             self.refuse_options_of_runs()?;
             let names: Vec<&str> = project.names.iter().map(String::as_str).collect();
             self.look.expect_one_of(&names)?;
@@ -121,7 +121,7 @@ impl PlotCommand {
         let Some(option) = field.or_else(|| self.friction.option()) else {
             return Ok(());
         };
-        Err(Failure::input(anyhow::anyhow!(
+        Err(Failure::input(format!(
             "{option} applies to pictures of runs, but {} is not a folder of a run: leave it out, or give a run, such as one in \
              its folder runs/",
             self.folders[0].display()
@@ -144,7 +144,7 @@ impl PlotCommand {
             }
             (Some(_), _) => {
                 let sentence = "--field draws the maps of one run: give one folder";
-                return Err(Failure::input(anyhow::anyhow!(sentence)));
+                return Err(Failure::input(sentence));
             }
             (None, [folder]) if !self.friction.is_asked_for() => {
                 self.look.expect_one_of(&RunPicture::ALL.map(RunPicture::name))?;
@@ -171,7 +171,7 @@ impl PlotCommand {
     /// Refuses a run without data for the requested picture.
     fn expect_drawn(&self, folder: &Path, is_empty: bool) -> Result<(), Failure> {
         match self.look.picture() {
-            Some(name) if is_empty => Err(Failure::input(anyhow::anyhow!(
+            Some(name) if is_empty => Err(Failure::input(format!(
                 "{} has no picture {name}: the run has no data for it",
                 folder.display()
             ))),

@@ -16,26 +16,24 @@ use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
 use slipfront_run::summary::summary_json;
 
-use super::options::RunOptions;
-use crate::checkpoint_timer::CheckpointTimer;
+use super::checkpoint_timer::CheckpointTimer;
+use super::execution::RunOptions;
 use crate::failure::Failure;
 use crate::print::{print, print_message};
 use crate::progress::run::RunProgress;
-use crate::report;
+use crate::report::summary::summary;
 
 /// Runs to the end and writes the results to the folder of the checkpoints, which the first rank holds.
 pub(super) fn complete(
     mut running: Running,
     folder: Option<RunFolder>,
     checkpoints: Checkpoints,
-    options: RunOptions,
+    options: &RunOptions,
 ) -> Result<(), RankFailure> {
-    let (case, ranks) = (Arc::clone(running.case()), options.ranks.clone());
-    let (draws, is_verbose) = (options.draws, options.is_verbose());
-    let allowed_threads = options.threads;
+    let (case, ranks) = (Arc::clone(running.case()), &options.ranks);
     let (started, first_step) = (checkpoints.started(), running.snapshot().step);
     let out = checkpoints.folder().to_owned();
-    let mut timer = CheckpointTimer::new(checkpoints, options.interval, options.signals, options.ranks);
+    let mut timer = CheckpointTimer::new(checkpoints, options);
     let mut progress = RunProgress::new(&running, options.quiet);
     let mut has_failed = false;
     let reason = loop {
@@ -62,11 +60,11 @@ pub(super) fn complete(
     progress.finish();
     let steps = running.snapshot().step - first_step;
     let processors = Processors {
-        threads: allowed_threads,
+        threads: options.threads,
         ..running.processors()
     };
     let mut record = running.record(reason);
-    let failed = |error: RunPictureError| Failure::running(anyhow::anyhow!("{error}; {}", timer.remedy()));
+    let failed = |error: RunPictureError| Failure::running(format!("{error}; {}", timer.remedy()));
     let mut folder = folder;
     let tables = folder
         .as_mut()
@@ -78,7 +76,7 @@ pub(super) fn complete(
         for (name, file) in blocks {
             folder.place(name, file)?;
         }
-        if draws {
+        if options.draws {
             pictures::complete(&case, folder, started, processors)
         } else {
             Ok(folder.complete(&case, started, processors)?)
@@ -87,8 +85,8 @@ pub(super) fn complete(
     ranks.agree(finished.transpose().map_err(failed))?;
     if options.json {
         ranks.first(|| print(&summary_json(&record.summary)))?;
-    } else if is_verbose {
-        print_message(&report::summary(&case, &record.summary));
+    } else if options.is_verbose() {
+        print_message(&summary(&case, &record.summary));
         if let Some(traffic) = ranks.traffic(steps) {
             print_message(&format!("{:<18}{traffic}\n", "rank 0 sends"));
         }

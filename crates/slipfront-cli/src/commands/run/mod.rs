@@ -1,17 +1,17 @@
 //! `slipfront run`: one case, from the case file to the pictures.
 
+mod checkpoint_timer;
 mod complete;
-mod options;
+mod execution;
 mod resume;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
-use slipfront::Execution;
 use slipfront_base::text::{display_path, shell_path};
 use slipfront_case::case::Case;
-use slipfront_case::same::NamedInputs;
+use slipfront_case::same_on_ranks::NamedInputs;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::clock;
@@ -20,17 +20,17 @@ use slipfront_run::results;
 use slipfront_run::run_folder::{ClaimedFolder, OpenedFolder, RunFolder, expect_shared};
 use slipfront_run::running::Running;
 
+use self::checkpoint_timer::Interval;
 use self::complete::complete;
-use self::options::RunOptions;
+use self::execution::RunOptions;
 use crate::case_args::CaseArgs;
-use crate::checkpoint_timer::Interval;
 use crate::device::DeviceArgs;
 use crate::failure::Failure;
-use crate::force::ForceArg;
 use crate::print::print_message;
 use crate::print_stderr::print_notes;
 use crate::ranks::CommandRanks;
-use crate::report;
+use crate::report::physics::physics;
+use crate::runs_args::ForceArg;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 
@@ -85,27 +85,20 @@ impl RunCommand {
         ranks.expect_same(|| self.shared_options())?;
         let options = ranks.agree(self.options(ranks))?;
         if let Some(folder) = &self.resume {
-            return resume::resume(folder, self.previous, self.device, options);
+            return resume::resume(folder, self.previous, &options);
         }
         let case_path = self.case.path().map(Path::to_owned);
         let case = Arc::new(ranks.agree(self.case.load(ranks, &options.signals, options.quiet))?);
-        let device = ranks.agree(
-            self.device
-                .open_for(&case, ranks.size(), options.quiet || options.json),
-        )?;
+        let execution = options.execution(&case)?;
         let (force, saves) = (self.force.given, options.interval.saves());
         let named = Path::new("results").join(&case.name);
         let (out, takes_next) = self.out.map_or((named, !force), |out| (out, false));
         let claimed = ranks.first(|| {
-            let claim = |number: usize| {
-                claim_folder(&numbered(&out, number), case_path.as_deref(), &case, force, saves)
-            };
             let mut number = 1;
             loop {
-                match claim(number) {
-                    Err(FolderRefusal::Taken(_) | FolderRefusal::HoldsInput(_))
-                        if takes_next && number < MOST_FOLDERS =>
-                    {
+                let folder = numbered(&out, number);
+                match claim_folder(&folder, case_path.as_deref(), &case, force, saves) {
+                    Err(refusal) if refusal.may_take_next() && takes_next && number < MOST_FOLDERS => {
                         number += 1;
                     }
                     Err(refusal) => return Err(refusal.failure(&out)),
@@ -114,9 +107,8 @@ impl RunCommand {
             }
         })?;
         let (claimed, number) = claimed.unzip();
-        let mut number = [number.unwrap_or(0) as f64];
-        ranks.largest(&mut number);
-        let (given, out) = (out.clone(), numbered(&out, number[0] as usize));
+        let number = ranks.largest_of(number.unwrap_or(0) as f64) as usize;
+        let (given, out) = (out.clone(), numbered(&out, number));
         if given != out && !options.quiet && ranks.is_first() {
             print_notes([format!(
                 "the folder {} is not empty: results go to {}",
@@ -136,16 +128,11 @@ impl RunCommand {
             .transpose();
         let folder = ranks.agree(folder)?;
         if options.is_verbose() {
-            print_message(&report::physics(&case));
+            print_message(&physics(&case));
         }
         let checkpoints = Checkpoints::new(&out, &case, started);
-        let execution = Execution {
-            communicator: ranks.communicator(),
-            device,
-            ..Execution::on_threads(options.threads)
-        };
         let running = Running::start(&case, None, execution);
-        complete(running, folder, checkpoints, options)
+        complete(running, folder, checkpoints, &options)
     }
 
     /// The options that all ranks must share. Each rank may have its own number of threads and folder, and
@@ -170,6 +157,7 @@ impl RunCommand {
         Ok(RunOptions {
             ranks: ranks.clone(),
             threads: set_threads(self.threads.or(default))?,
+            device: self.device,
             interval: self.checkpoint,
             draws: !self.no_pictures,
             signals: Signals::catch().map_err(Failure::running)?,
@@ -187,22 +175,17 @@ fn claim_folder(
     force: bool,
     saves: bool,
 ) -> Result<ClaimedFolder, FolderRefusal> {
-    let input = |error: FolderError| FolderRefusal::Other(Failure::input(error));
     refuse_to_replace(case_path, case, out).map_err(FolderRefusal::HoldsInput)?;
-    let folder = OpenedFolder::open(out).map_err(input)?;
+    let folder = OpenedFolder::open(out).map_err(FolderRefusal::Folder)?;
     let replaced = if force {
-        folder.inspection.managed_bytes().map_err(input)?
+        folder.inspection.managed_bytes().map_err(FolderRefusal::Folder)?
     } else {
         0
     };
     case.budget
         .check_disk(&case.file, out, replaced, saves)
-        .map_err(|error| FolderRefusal::Other(Failure::input(error)))?;
-    folder.claim(force, &case.inputs).map_err(|error| match error {
-        FolderError::NotEmpty { .. } => FolderRefusal::Taken(error),
-        FolderError::Interrupted { .. } => FolderRefusal::Interrupted(error),
-        other => input(other),
-    })
+        .map_err(|error| FolderRefusal::Disk(Failure::input(error)))?;
+    folder.claim(force, &case.inputs).map_err(FolderRefusal::Folder)
 }
 
 /// Writes the case and its inputs to the folder of a new run, in place of an earlier one, so that the run can
@@ -215,7 +198,7 @@ fn begin_folder(claimed: ClaimedFolder, case: &Case, signals: &Signals) -> Resul
         Err(_) if signals.stopped().is_some() => {
             folder.discard();
             let sentence = "stopped while files were copied to the folder; they were removed";
-            Err(Failure::stopped(signals, anyhow::anyhow!(sentence)))
+            Err(Failure::stopped(signals, sentence))
         }
         Err(error) => Err(Failure::running(error)),
     }
@@ -223,27 +206,35 @@ fn begin_folder(claimed: ClaimedFolder, case: &Case, signals: &Signals) -> Resul
 
 /// Reasons why a folder was not claimed.
 enum FolderRefusal {
-    /// The folder contains other files, such as the files of a complete run.
-    Taken(FolderError),
-    /// The folder contains a run that was stopped.
-    Interrupted(FolderError),
+    /// The folder contains other files, or cannot be used.
+    Folder(FolderError),
     /// The folder contains the case to run, or a file that the case reads.
     HoldsInput(Failure),
-    Other(Failure),
+    /// The disk has too little space.
+    Disk(Failure),
 }
 
 impl FolderRefusal {
+    /// Whether a folder with the next number can be used instead. A run that was stopped is resumed.
+    fn may_take_next(&self) -> bool {
+        matches!(
+            self,
+            Self::HoldsInput(_) | Self::Folder(FolderError::NotEmpty { .. })
+        )
+    }
+
     /// The error message; if a folder is taken, it names a free one.
     fn failure(self, out: &Path) -> Failure {
         let error = match self {
-            Self::Other(failure) | Self::HoldsInput(failure) => return failure,
-            Self::Taken(error) | Self::Interrupted(error) => error,
+            Self::HoldsInput(failure) | Self::Disk(failure) => return failure,
+            Self::Folder(error @ (FolderError::NotEmpty { .. } | FolderError::Interrupted { .. })) => error,
+            Self::Folder(error) => return Failure::input(error),
         };
         let mut others = (2..MOST_FOLDERS).map(|number| numbered(out, number));
         match others.find(|free| free.symlink_metadata().is_err()) {
             Some(free) => {
                 let free = shell_path(&free);
-                Failure::input(anyhow::anyhow!("{error}; `--out {free}` is free"))
+                Failure::input(format!("{error}; `--out {free}` is free"))
             }
             None => Failure::input(error),
         }
@@ -279,5 +270,5 @@ fn refuse_to_replace(path: Option<&Path>, case: &Case, out: &Path) -> Result<(),
         "the results would replace {}, an input of the run: choose another folder with --out",
         path.display()
     );
-    Err(Failure::input(anyhow::anyhow!(sentence)))
+    Err(Failure::input(sentence))
 }

@@ -18,44 +18,33 @@ use slipfront_run::summary::{read_summary, summary_json};
 use slipfront_run::verify::{VerifyError, expect_as_written};
 
 use super::complete::complete;
-use super::options::RunOptions;
-use crate::device::DeviceArgs;
+use super::execution::RunOptions;
 use crate::failure::Failure;
 use crate::make_case::make_case;
 use crate::print::{print, print_message};
 use crate::ranks::CommandRanks;
-use crate::report;
+use crate::report::physics::physics;
 
-pub(super) fn resume(
-    path: &Path,
-    previous: bool,
-    device: DeviceArgs,
-    options: RunOptions,
-) -> Result<(), RankFailure> {
-    let ranks = options.ranks.clone();
+pub(super) fn resume(path: &Path, previous: bool, options: &RunOptions) -> Result<(), RankFailure> {
+    let ranks = &options.ranks;
     let folder = ranks.agree(open(path, ranks.is_first()))?;
     let run = &folder.inspection;
     let is_complete = matches!(run.contents, Contents::Complete(_));
     // Ranks may see the folder at slightly different times: the first rank decides.
     if ranks.any(ranks.is_first() && is_complete) {
-        return ranks.first(|| report_complete(run, &options)).map(|_| ());
+        return ranks.first(|| report_complete(run, options)).map(|_| ());
     }
     // Ranks must agree before this: a rank without a case would leave the others waiting for it.
     let file = ranks.agree(run.case_to_resume().map_err(Failure::input))?.clone();
-    let case = Arc::new(ranks.agree(case_to_resume(run, file, &options))?);
-    let device = ranks.agree(device.open_for(&case, ranks.size(), options.quiet || options.json))?;
-    let loaded = ranks.agree(load(run, &case, previous, &ranks))?;
-    ranks.first(|| check_disk(run, &case, &options))?;
-    let execution = Execution {
-        communicator: ranks.communicator(),
-        device,
-        ..Execution::on_threads(options.threads)
-    };
-    let (running, checkpoints, from) = ranks.agree(begin(run, &case, loaded, previous, execution, &ranks))?;
+    let case = Arc::new(ranks.agree(case_to_resume(run, file, options))?);
+    let execution = options.execution(&case)?;
+    let loaded = ranks.agree(load(run, &case, previous, ranks))?;
+    ranks.first(|| check_disk(run, &case, options))?;
+    let (running, checkpoints, from) = ranks.agree(begin(run, &case, loaded, previous, execution, ranks))?;
     let folder = ranks.first(|| folder.resume(&case).map_err(Failure::input))?;
     expect_shared(checkpoints.folder(), &*ranks.communicator())?;
     if options.is_verbose() {
-        print_message(&report::physics(&case));
+        print_message(&physics(&case));
         print_message(&format!("goes on from {from}\n"));
     }
     complete(running, folder, checkpoints, options)
@@ -109,9 +98,8 @@ fn begin(
             let resumed = loaded.resume(case, execution);
             let resumed = resumed.map_err(|error| refused(ranks, &error, run, case, previous))?;
             let running = resumed.ok_or_else(|| {
-                let sentence = "does not belong to its case";
-                Failure::input(anyhow::anyhow!(
-                    "the checkpoint in {} {sentence}; {ANEW}",
+                Failure::input(format!(
+                    "the checkpoint in {} does not belong to its case; {ANEW}",
                     run.path.display()
                 ))
             })?;
@@ -129,15 +117,17 @@ fn case_to_resume(run: &Inspection, file: CaseFile, options: &RunOptions) -> Res
     // Results are named after their folder, not after the file in it.
     let folder = path.canonicalize().unwrap_or_else(|_| path.clone());
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let mut ranks_differ = false;
     let made = make_case(&options.ranks, &options.signals, options.quiet, |watch, ranks| {
-        Case::to_run(file, &name, path, watch, ranks)
+        let made = Case::to_run(file, &name, path.as_path(), watch, ranks);
+        made.inspect_err(|error| ranks_differ = matches!(error, CaseError::Differs(_)))
     });
     let case = made.map_err(|failure| match failure {
         // A difference between ranks is no sign of an interrupted run.
-        Failure::Input(error) if !matches!(error.downcast_ref(), Some(CaseError::Differs(_))) => {
+        Failure::Input(error) if !ranks_differ => {
             let hint =
                 "if the run was stopped before all its inputs were copied, start it again with --force";
-            Failure::input(anyhow::anyhow!("{error}\n{hint}"))
+            Failure::input(format!("{error}\n{hint}"))
         }
         failure => failure,
     })?;
@@ -153,13 +143,13 @@ fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure
     run.manifest().map_err(Failure::input)?;
     let path = &run.path;
     // A kill may have left this folder behind. If the disk is read-only, the folder does no harm.
-    let unfinished = Unfinished::of(path);
+    let unfinished = Unfinished::in_folder(path);
     if unfinished.is_managed().map_err(Failure::input)? {
         let _ = unfinished.remove();
     }
     let unchanged = |which: &dyn Fn(&str) -> bool, remedy: &str| {
         expect_as_written(run, which).map_err(|error| match error {
-            VerifyError::Changed { difference, .. } => Failure::input(anyhow::anyhow!(
+            VerifyError::Changed { difference, .. } => Failure::input(format!(
                 "{difference}, and the run in {} is complete: {remedy}",
                 path.display()
             )),
@@ -191,13 +181,10 @@ fn load(
     ranks: &CommandRanks,
 ) -> Result<Option<LoadedCheckpoint>, Failure> {
     match Checkpoints::load(&run.path, case, previous, &*ranks.communicator()) {
-        Ok(None) if previous => {
-            let sentence = "has no checkpoint before the latest one";
-            Err(Failure::input(anyhow::anyhow!(
-                "{} {sentence}",
-                run.path.display()
-            )))
-        }
+        Ok(None) if previous => Err(Failure::input(format!(
+            "{} has no checkpoint before the latest one",
+            run.path.display()
+        ))),
         Ok(loaded) => Ok(loaded),
         Err(error) => Err(refused(ranks, &error, run, case, previous)),
     }
@@ -217,7 +204,7 @@ fn refused(
     } else {
         String::new()
     };
-    Failure::input(anyhow::anyhow!("{error}; {remedy}"))
+    Failure::input(format!("{error}; {remedy}"))
 }
 
 /// The remedy when a checkpoint is refused.

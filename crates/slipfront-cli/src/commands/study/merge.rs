@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use slipfront_base::number_format::count;
-use slipfront_study::{Plan, StudyFolder, collect, is_study, refuse_foreign, study_of};
+use slipfront_study::{Plan, StudyFolder, collect, is_study, refuse_foreign, study_of, write};
 
-use super::run::{Shown, finish};
 use crate::failure::Failure;
-use crate::force::ForceArg;
+use crate::print::print_message;
 use crate::print_stderr::print_stderr;
+use crate::report::study::study_results;
+use crate::runs_args::ForceArg;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
@@ -43,7 +44,7 @@ impl Merge {
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
         let mut folder =
-            StudyFolder::open(&self.out, &study, None, self.force.given).map_err(Failure::of_folder)?;
+            StudyFolder::open(&self.out, &study, None, self.force.given).map_err(Failure::from_folder)?;
         let mut taken = 0;
         for shard in &self.shards {
             Failure::if_stopped(&signals)?;
@@ -59,9 +60,12 @@ impl Merge {
         let results = collect(&plan, &folder.records).map_err(Failure::running)?;
         folder
             .take_kept(&plan, &results, &self.shards, &signals.stop)
-            .map_err(|error| Failure::of_results(&signals, error))?;
-        let shown = if self.quiet { Shown::Nothing } else { Shown::Tables };
-        finish(&plan, &results, &folder, shown, &signals)?;
+            .and_then(|_| write(&plan, &results, &folder, &signals.stop))
+            .map_err(|error| Failure::from_results(&signals, error))?;
+        if !self.quiet {
+            print_message(&study_results(&plan, &results, folder.path()));
+        }
+        results.expect_no_failures(&plan).map_err(Failure::running)?;
         results.expect_values(&plan).map_err(Failure::running)
     }
 }

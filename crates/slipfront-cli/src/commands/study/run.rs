@@ -8,16 +8,15 @@ use slipfront_base::disk::is_same;
 use slipfront_study as study;
 use slipfront_study::{Plan, Progress, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
-use crate::device::DeviceArgs;
 use crate::failure::Failure;
-use crate::force::ForceArg;
-use crate::print::{print, print_message};
+use crate::print::{print, print_json, print_message};
 use crate::print_stderr::print_notes;
-use crate::progress::study::StudyProgress;
-use crate::report;
-use crate::report::text_of;
+use crate::progress::display::ProgressDisplay;
+use crate::progress::study::show_study;
+use crate::report::study::{study_plan, study_results};
+use crate::runs_args::RunsArgs;
 use crate::signals::Signals;
-use crate::threads::{count_from_one, set_threads, set_worker_threads};
+use crate::threads::{set_threads, set_worker_threads};
 
 #[derive(Args)]
 pub(crate) struct StudyRun {
@@ -31,12 +30,7 @@ pub(crate) struct StudyRun {
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    force: ForceArg,
-    /// Maximum number of runs at a time [default: one per core]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = count_from_one)]
-    threads: Option<u16>,
-    #[command(flatten)]
-    device: DeviceArgs,
+    runs: RunsArgs,
     /// Do not print progress and tables
     #[arg(short, long)]
     quiet: bool,
@@ -75,12 +69,12 @@ pub(super) fn refuse_large(file: &StudyFile, confirmed: bool) -> Result<(), Fail
 impl StudyRun {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = if self.dry_run {
-            set_threads(self.threads)?
+            set_threads(self.runs.threads)?
         } else {
-            set_worker_threads(self.threads, 0)?
+            set_worker_threads(self.runs.threads, 0)?
         };
         let Some(path) = self.study else {
-            return Err(Failure::input(anyhow::anyhow!("name a study file")));
+            return Err(Failure::input("name a study file"));
         };
         let mut file = StudyFile::load(&path).map_err(Failure::input)?;
         file.set(&self.overrides).map_err(Failure::input)?;
@@ -91,25 +85,25 @@ impl StudyRun {
         }
         plan.check_memory(threads).map_err(Failure::input)?;
         let kept = plan.settings.keeps_all_runs().then_some(FOLDERS_ON_CPU);
-        let device = self.device.open(kept, self.quiet)?;
+        let device = self.runs.device.open(kept, self.quiet)?;
         let is_changed_unsaid = self.out.is_none() && !self.overrides.is_empty();
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         refuse_to_replace(&path, file.has_base_file() || is_changed_unsaid, &out)?;
         // A signal removes all files that were copied to the folder.
         let signals = Signals::catch().map_err(Failure::running)?;
-        let folder =
-            StudyFolder::open(&out, &file, self.shard, self.force.given).map_err(Failure::of_folder)?;
+        let folder = StudyFolder::open(&out, &file, self.shard, self.runs.force.given)
+            .map_err(Failure::from_folder)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
         let results = run_all(&plan, &folder, device.as_deref(), &signals, self.quiet)?;
-        let shown = if self.json {
-            Shown::Json
-        } else if self.quiet {
-            Shown::Nothing
-        } else {
-            Shown::Tables
-        };
-        finish(&plan, &results, &folder, shown, &signals)?;
+        study::write(&plan, &results, &folder, &signals.stop)
+            .map_err(|error| Failure::from_results(&signals, error))?;
+        if self.json {
+            print_json(&study::answer(&plan, &results))?;
+        } else if !self.quiet {
+            print_message(&study_results(&plan, &results, folder.path()));
+        }
+        results.expect_no_failures(&plan).map_err(Failure::running)?;
         // Values that one shard lacks may be in the other shards.
         if self.shard.is_some() {
             return Ok(());
@@ -129,7 +123,7 @@ fn refuse_to_replace(path: &Path, differs: bool, out: &Path) -> Result<(), Failu
         "the results would replace {}, an input of the study: move it out of the folder, or choose another folder with --out",
         path.display()
     );
-    Err(Failure::input(anyhow::anyhow!(sentence)))
+    Err(Failure::input(sentence))
 }
 
 /// Default folder for the results; each shard has its own.
@@ -149,53 +143,19 @@ pub(in crate::commands) fn run_all(
     signals: &Signals,
     quiet: bool,
 ) -> Result<StudyResults, Failure> {
-    let mut progress = StudyProgress::new(quiet);
+    let mut progress = ProgressDisplay::new(quiet);
     if !quiet {
-        note_before_runs(plan, folder);
+        print_notes(study::idle_axes(plan));
+        print_notes(folder.notes());
     }
-    let path = folder.path().to_owned();
-    let (records, stop) = (&folder.records, &signals.stop);
-    let watch = &mut |now: &Progress| progress.show(now);
+    let (records, path, stop) = (&folder.records, folder.path(), &signals.stop);
+    let watch = &mut |now: &Progress| show_study(&mut progress, now);
     let done = match device {
-        Some(device) => study::execute_on_device(plan, records, &path, device, stop, watch),
-        None => study::execute(plan, records, &path, stop, watch),
+        Some(device) => study::execute_on_device(plan, records, path, device, stop, watch),
+        None => study::execute(plan, records, path, stop, watch),
     };
     progress.finish();
-    done.map_err(|error| Failure::of_results(signals, error))
-}
-
-/// Prints notes before the runs: on axes that change nothing, and on a folder that was used before.
-fn note_before_runs(plan: &Plan, folder: &StudyFolder) {
-    print_notes(study::idle_axes(plan));
-    print_notes(folder.notes());
-}
-
-/// Form in which the results of a study are printed.
-#[derive(Clone, Copy)]
-pub(super) enum Shown {
-    /// Tables for a human reader.
-    Tables,
-    /// One JSON object.
-    Json,
-    Nothing,
-}
-
-/// Writes tables and pictures, and prints the results of the study; fails if runs have failed.
-pub(super) fn finish(
-    plan: &Plan,
-    results: &StudyResults,
-    folder: &StudyFolder,
-    shown: Shown,
-    signals: &Signals,
-) -> Result<(), Failure> {
-    let written = study::write(plan, results, folder, &signals.stop);
-    written.map_err(|error| Failure::of_results(signals, error))?;
-    match shown {
-        Shown::Tables => print_message(&report::study(plan, results, folder.path())),
-        Shown::Json => print(&text_of(&study::answer(plan, results)))?,
-        Shown::Nothing => {}
-    }
-    results.expect_no_failures(plan).map_err(Failure::running)
+    done.map_err(|error| Failure::from_results(signals, error))
 }
 
 /// The plan of a study, with its cost as measured on this machine.
@@ -203,5 +163,5 @@ pub(in crate::commands) fn dry_run(plan: &Plan, threads: usize) -> Result<String
     // Only one run must fit into this machine: the study may be meant for another machine.
     plan.check_memory(1).map_err(Failure::input)?;
     let time = study::estimated_time(plan, threads).map_err(Failure::input)?;
-    Ok(report::plan(plan, time, threads))
+    Ok(study_plan(plan, time, threads))
 }

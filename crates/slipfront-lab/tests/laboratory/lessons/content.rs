@@ -199,6 +199,6 @@ pub(crate) fn case(name: &str, keys: &Keys) -> Case {
         .map(|(key, json)| Override::new(key, &value(json)).to_string())
         .collect();
     CaseFile::parse(&text, name, &overrides)
-        .and_then(|file| Case::to_run(file, name, &web(), &mut |_| true, Ranks::ALONE))
+        .and_then(|file| Case::to_run(file, name, web().as_path(), &mut |_| true, Ranks::ALONE))
         .unwrap_or_else(|error| panic!("{error}"))
 }

@@ -45,7 +45,7 @@ fn parts(number: &Number) -> Vec<(Keys, Option<Keys>)> {
 
 impl Runs {
     /// All runs that these numbers need.
-    pub(crate) fn of<'a>(numbers: impl Iterator<Item = &'a Number>) -> Self {
+    pub(crate) fn for_numbers<'a>(numbers: impl Iterator<Item = &'a Number>) -> Self {
         let mut wanted = BTreeMap::new();
         for number in numbers.filter(|number| number.quantity != Quantity::Key) {
             for keys in parts(number)
@@ -56,7 +56,7 @@ impl Runs {
                 wanted.insert(name(&number.case, &keys), (number.case.clone(), keys));
             }
         }
-        let run = |(name, (file, keys)): (String, (String, Keys))| (name, Run::of(&file, &keys));
+        let run = |(name, (file, keys)): (String, (String, Keys))| (name, Run::new(&file, &keys));
         Self(wanted.into_par_iter().map(run).collect())
     }
 
@@ -73,7 +73,7 @@ impl Runs {
 }
 
 impl Run {
-    fn of(file: &str, keys: &Keys) -> Self {
+    fn new(file: &str, keys: &Keys) -> Self {
         let case = Arc::new(case(file, keys));
         let record = running::run(&case, 1).unwrap_or_else(|error| panic!("{file}: {error}"));
         let textured = &case.model.surface.textured;

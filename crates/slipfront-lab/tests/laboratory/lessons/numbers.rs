@@ -49,7 +49,7 @@ fn says_key_of(number: &Number, key: &str, case: &Case) -> bool {
 #[test]
 fn what_is_said_is_what_is_computed() {
     let numbers = numbers();
-    let runs = Runs::of(numbers.values());
+    let runs = Runs::for_numbers(numbers.values());
     let wrong: Vec<String> = numbers
         .iter()
         .filter_map(|(id, number)| {

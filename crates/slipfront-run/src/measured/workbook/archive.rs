@@ -69,7 +69,7 @@ pub(super) struct Parts<'b> {
 }
 
 impl<'b> Parts<'b> {
-    pub(super) fn of(bytes: &'b [u8]) -> Result<Self, String> {
+    pub(super) fn open(bytes: &'b [u8]) -> Result<Self, String> {
         let no_archive = |error: rawzip::Error| format!("it is no zip archive ({error})");
         let archive = ZipArchive::from_slice(bytes).map_err(no_archive)?;
         let mut found = HashMap::new();

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::forces::part;
+use crate::forces::{part, values_of, values_of_mut};
 use crate::friction::needs::Needs;
 use crate::surface::Adhesion;
 use crate::vector_field::{VectorField, dot};
@@ -94,17 +94,10 @@ impl Aged {
         forces: [&VectorField; 2],
         time_star: f64,
     ) {
-        let (n, [vx, vy], [[dx, dy], [lx, ly]]) = (
-            blocks.len(),
-            part(velocity, blocks),
-            forces.map(|force| part(force, blocks)),
-        );
-        let (young, vx, vy) = (&young[blocks.clone()][..n], &vx[..n], &vy[..n]);
-        let (dx, dy, lx, ly) = (&dx[..n], &dy[..n], &lx[..n], &ly[..n]);
-        let (static_limit, is_old) = (
-            &mut self.static_limit[blocks.clone()][..n],
-            &mut self.is_old[blocks.clone()][..n],
-        );
+        let (n, young, [vx, vy]) = (blocks.len(), values_of(young, blocks), part(velocity, blocks));
+        let [[dx, dy], [lx, ly]] = forces.map(|force| part(force, blocks));
+        let static_limit = values_of_mut(&mut self.static_limit, blocks);
+        let is_old = values_of_mut(&mut self.is_old, blocks);
         for k in 0..n {
             let force = [dx[k] + lx[k], dy[k] + ly[k]];
             is_old[k] = (vx[k] == 0.0) & (vy[k] == 0.0) & (dot(force, force) > young[k] * young[k]);
@@ -127,10 +120,9 @@ impl Aged {
         slides: &[bool],
         time_star: f64,
     ) {
-        let (n, [vx, vy]) = (blocks.len(), part(before, blocks));
-        let (vx, vy, slides) = (&vx[..n], &vy[..n], &slides[blocks.clone()][..n]);
-        let stopped_at = &mut self.stopped_at[blocks.clone()][..n];
-        for k in 0..n {
+        let ([vx, vy], slides) = (part(before, blocks), values_of(slides, blocks));
+        let stopped_at = values_of_mut(&mut self.stopped_at, blocks);
+        for k in 0..blocks.len() {
             let stops = ((vx[k] != 0.0) | (vy[k] != 0.0)) & !slides[k];
             stopped_at[k] = if stops { time_star } else { stopped_at[k] };
         }

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::reading::{BlockState, LawReading, Update};
+use super::law_readings::{BlockState, LawReading, Update};
 use crate::forces::{part, part_mut};
 use crate::friction::needs::Needs;
 use crate::surface::Surface;
@@ -154,7 +154,7 @@ impl InterfaceContact {
     }
 }
 
-/// Moreau's time-stepping as in [`Projection`](super::reading::Projection), along x alone.
+/// Moreau's time-stepping as in [`Projection`](super::law_readings::Projection), along x alone.
 pub(super) struct AlongX;
 
 impl LawReading for AlongX {

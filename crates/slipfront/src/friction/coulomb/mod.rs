@@ -2,7 +2,7 @@
 
 mod ageing;
 mod interface;
-mod reading;
+mod law_readings;
 mod slip_weakening;
 mod update;
 mod weakening;
@@ -11,13 +11,13 @@ use std::ops::Range;
 
 pub use self::ageing::Ageing;
 pub use self::interface::Interface;
-pub use self::reading::FrictionLaw;
+pub use self::law_readings::FrictionLaw;
 pub use self::slip_weakening::SlipWeakening;
 pub use self::weakening::Weakening;
 
 use self::ageing::Aged;
 use self::interface::{AlongX, InterfaceContact};
-use self::reading::{Literal, Projection, Reversal};
+use self::law_readings::{Literal, Projection, Reversal};
 use self::slip_weakening::Slipped;
 use self::update::friction_forces;
 use self::weakening::Weakened;
@@ -66,7 +66,7 @@ impl Coulomb {
         reading
             .and(self.weakening.map(|_| Weakening::NEEDS))
             .and(self.ageing.map(|_| Ageing::NEEDS))
-            .and(self.slip_weakening.map(|law| law.needs()))
+            .and(self.slip_weakening.map(slip_weakening::needs))
             .and(self.interface.map(|_| Interface::NEEDS))
     }
 

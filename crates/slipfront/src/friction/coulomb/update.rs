@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::reading::{BlockState, LawReading};
-use crate::forces::{Forces, part, part_mut};
+use super::law_readings::{BlockState, LawReading};
+use crate::forces::{Forces, part, part_mut, values_of, values_of_mut};
 use crate::state::State;
 use slipfront_kernel::Integrator;
 
@@ -21,12 +21,12 @@ pub(super) fn friction_forces<L: LawReading>(
     apply_friction(
         law,
         integrator,
-        thresholds.map(|array| &array[blocks.clone()]),
+        thresholds.map(|array| values_of(array, blocks)),
         part(&state.velocity, blocks),
         [part(&forces.drive, blocks), part(&forces.lattice, blocks)],
         part_mut(&mut forces.friction, blocks),
         part_mut(&mut forces.velocity, blocks),
-        &mut forces.slides[blocks.clone()],
+        values_of_mut(&mut forces.slides, blocks),
     );
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::forces::part;
+use crate::forces::{part, values_of, values_of_mut};
 use crate::friction::needs::Needs;
 use crate::surface::Adhesion;
 use crate::vector_field::{VectorField, length};
@@ -70,10 +70,9 @@ impl Weakened {
     /// Finds kinetic friction from the velocities half a step before.
     #[inline(always)]
     pub(super) fn update(&mut self, blocks: &Range<usize>, at_rest: &[f64], velocity: &VectorField) {
-        let (n, [vx, vy]) = (blocks.len(), part(velocity, blocks));
-        let (at_rest, vx, vy) = (&at_rest[blocks.clone()][..n], &vx[..n], &vy[..n]);
-        let kinetic_force = &mut self.kinetic_force[blocks.clone()][..n];
-        for k in 0..n {
+        let ([vx, vy], at_rest) = (part(velocity, blocks), values_of(at_rest, blocks));
+        let kinetic_force = values_of_mut(&mut self.kinetic_force, blocks);
+        for k in 0..blocks.len() {
             kinetic_force[k] = self
                 .law
                 .kinetic_force(at_rest[k], self.adhesion, length([vx[k], vy[k]]));

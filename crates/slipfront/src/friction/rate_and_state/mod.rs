@@ -7,7 +7,7 @@ use std::ops::Range;
 use self::slide::{LARGE, Sliding, slide};
 use super::needs::Needs;
 use crate::elementary::{SMALL_DECAY, exp, ln, mean_decay, small_mean_decay};
-use crate::forces::{Forces, part, part_mut};
+use crate::forces::{Forces, part, part_mut, values_of, values_of_mut};
 use crate::state::State;
 use crate::surface::Surface;
 use crate::vector_field::{VectorField, length};
@@ -213,7 +213,6 @@ impl StateContact {
         for first in blocks.clone().step_by(AT_ONCE) {
             let blocks = first..blocks.end.min(first + AT_ONCE);
             let (n, [vx, vy]) = (blocks.len(), part(velocity, &blocks));
-            let (vx, vy) = (&vx[..n], &vy[..n]);
             let (mut speed, mut theta) = ([0.0; AT_ONCE], [1.0; AT_ONCE]);
             for k in 0..n {
                 speed[k] = length([vx[k], vy[k]]);
@@ -280,8 +279,7 @@ impl StateContact {
             part_mut(&mut forces.friction, blocks),
             part_mut(&mut forces.velocity, blocks),
         );
-        let (fx, fy, wx, wy) = (&mut fx[..n], &mut fy[..n], &mut wx[..n], &mut wy[..n]);
-        let slides = &mut forces.slides[blocks.clone()][..n];
+        let slides = values_of_mut(&mut forces.slides, blocks);
         for k in 0..n {
             let moves = free[k] >= f64::MIN_POSITIVE;
             let inverse = if moves { 1.0 / free[k] } else { 0.0 };
@@ -301,10 +299,12 @@ impl StateContact {
         sum: &mut RunningSum,
         states: &mut [f64],
     ) {
-        let (n, theta) = (blocks.len(), &self.theta[blocks.clone()]);
-        let (theta, textured) = (&theta[..n], &surface.textured[blocks.clone()][..n]);
-        let states = &mut states[..n];
-        for k in 0..n {
+        let (theta, textured) = (
+            values_of(&self.theta, blocks),
+            values_of(&surface.textured, blocks),
+        );
+        let states = &mut states[..blocks.len()];
+        for k in 0..blocks.len() {
             states[k] = if textured[k] { 0.0 } else { theta[k] };
         }
         sum.add(states);

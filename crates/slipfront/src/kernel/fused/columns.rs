@@ -31,15 +31,21 @@ pub(super) fn set_column(
                     *step = if number.is_nan() { NEVER } else { number as u32 };
                 }
             }
+            BlockColumn::Memory(number) => {
+                let thresholds = band.thresholds.as_mut();
+                if let Some(memory) = thresholds.and_then(|thresholds| thresholds.column_mut(number)) {
+                    memory[own].copy_from_slice(values);
+                }
+            }
         }
     }
 }
 
-/// Writes to `values` a column of a checkpoint from block `first` on, for the blocks of the band.
+/// Writes to `values` a column of a checkpoint at t*, from block `first` on, for the blocks of the band.
 pub(super) fn read_column(
     band: &Band,
     layout: &Layout,
-    dt_star: f64,
+    [dt_star, time_star]: [f64; 2],
     column: BlockColumn,
     first: usize,
     values: &mut [f64],
@@ -61,40 +67,15 @@ pub(super) fn read_column(
                     };
                 }
             }
-        }
-    }
-}
-
-/// Sets a column of the memory of the law of friction from block `first` on, for the blocks of the band.
-pub(super) fn set_memory(band: &mut Band, layout: &Layout, column: usize, first: usize, values: &[f64]) {
-    for [of_values, own] in common(band, layout, first, values.len()) {
-        let memory = band
-            .thresholds
-            .as_mut()
-            .and_then(|thresholds| thresholds.column_mut(column));
-        if let Some(memory) = memory {
-            memory[own].copy_from_slice(&values[of_values]);
-        }
-    }
-}
-
-/// Writes to `values` a column of the memory of the law of friction at t*, from block `first` on, for the
-/// blocks of the band.
-pub(super) fn read_memory(
-    band: &Band,
-    layout: &Layout,
-    time_star: f64,
-    column: usize,
-    first: usize,
-    values: &mut [f64],
-) {
-    let Some(thresholds) = &band.thresholds else {
-        return;
-    };
-    for [of_values, own] in common(band, layout, first, values.len()) {
-        for (value, k) in values[of_values].iter_mut().zip(own) {
-            let is_moving = band.velocity.at(k) != [0.0, 0.0];
-            *value = thresholds.memory(column, k, is_moving, time_star);
+            BlockColumn::Memory(number) => {
+                let Some(thresholds) = &band.thresholds else {
+                    return;
+                };
+                for (value, k) in values.iter_mut().zip(own) {
+                    let is_moving = band.velocity.at(k) != [0.0, 0.0];
+                    *value = thresholds.memory(number, k, is_moving, time_star);
+                }
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 //! tile by tile, with the same bits.
 
 use fearless_simd::Level;
-use slipfront_kernel::{Band, LANES, Layout, SquareRoot, Step, Stress, StressReader, TILE};
+use slipfront_kernel::{Band, LANES, Layout, Step, Stress, StressReader, TILE};
 
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::TakeSliding;
@@ -11,37 +11,28 @@ use crate::lattice::Bond;
 use crate::model::Model;
 use crate::vector_field::length;
 
-/// Force of the drive spring on block `b` (Eq. 2), with the dead load and the change of the normal force of
-/// an interface.
-pub(super) fn drive_force(model: &Model, drive_time_star: f64, b: usize, displacement: [f64; 2]) -> [f64; 2] {
-    let drive_spring = model.slider.drive_spring(b);
-    let spring = model.drive.force(displacement, drive_time_star);
-    let load = model.dead_load_of(b);
-    let [x, y] = [0, 1].map(|axis| drive_spring * spring[axis] + load[axis]);
-    match model.friction.interface() {
-        Some(interface) => [x, y + interface.reaction_on(&model.surface, b, displacement[1])],
-        None => [x, y],
-    }
-}
-
-/// Block `b` under the given force of its drive spring. `motion` returns displacement
-/// and velocity of a block.
+/// Block `b` at a time of the drive, with its kinetic friction under its load at rest. `motion` returns
+/// displacement and velocity of a block.
 pub(super) fn block(
     model: &Model,
+    drive_time_star: f64,
     b: usize,
-    force_drive: [f64; 2],
-    kinetic_force: f64,
+    mut kinetic_force: f64,
     motion: impl Fn(usize) -> [[f64; 2]; 2],
 ) -> Block {
     let [displacement, velocity] = motion(b);
+    let (drive_spring, load) = (model.slider.drive_spring(b), model.dead_load_of(b));
+    let spring = model.drive.force(displacement, drive_time_star);
+    let mut force_drive = [0, 1].map(|axis| drive_spring * spring[axis] + load[axis]);
     let force_lattice = lattice_force(model, b, displacement, |b| motion(b)[0]);
-    let (mut slip_velocity, mut kinetic_force) = (velocity, kinetic_force);
-    if let Some(interface) = model.friction.interface() {
+    let (interface, mut slip_velocity) = (model.friction.interface(), velocity);
+    if let Some(interface) = &interface {
         slip_velocity[1] = 0.0;
         kinetic_force *= interface.share(model.surface.load(b), displacement[1]);
+        force_drive[1] += interface.reaction_on(&model.surface, b, displacement[1]);
     }
     let mut force_friction = friction(kinetic_force, slip_velocity, force_drive, force_lattice);
-    if model.friction.interface().is_some() {
+    if interface.is_some() {
         force_friction[1] = 0.0;
     }
     Block {
@@ -72,7 +63,7 @@ fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usi
         let behind = neighbour([-di, -dj]).map_or([0.0; 2], |(v, factor)| force(v, u).map(|f| factor * f));
         [ahead[0] - behind[0], ahead[1] - behind[1]]
     };
-    let [e, n, ne, nw] = model.springs.bonds().each_ref().map(pair);
+    let [e, n, ne, nw] = Bond::ALL.each_ref().map(pair);
     [(e[0] + n[0]) + (ne[0] + nw[0]), (e[1] + n[1]) + (ne[1] + nw[1])]
 }
 
@@ -92,7 +83,7 @@ fn friction(kinetic_force: f64, velocity: [f64; 2], drive: [f64; 2], lattice: [f
 /// column of the first value, and the values.
 pub(super) fn read_rows(
     model: &Model,
-    (level, step, springs): (Level, Step, SquareRoot),
+    (level, step): (Level, Step),
     (field, stride): (Field, usize),
     (layout, bands): (&Layout, &[Band]),
     write: &mut dyn FnMut(usize, usize, &[f32]),
@@ -104,7 +95,7 @@ pub(super) fn read_rows(
             Field::Traction => Some(Stress::Traction),
             _ => None,
         };
-        let mut stresses = stress.map(|stress| StressReader::new(level, band, stress, step, springs));
+        let mut stresses = stress.map(|stress| StressReader::new(level, band, stress, step, model.epsilon));
         for t in 0..band.tiles.len() {
             let elements = band.elements(t);
             let rows = || layout.rows_among(band.first + elements.start..band.first + elements.end);

@@ -60,7 +60,8 @@ impl FusedKernel {
     /// t* of the first slip of every block; NaN where there was none.
     pub fn first_slip_times_star(&self) -> Vec<f64> {
         let mut times = vec![0.0; self.model.lattice.n_blocks()];
-        self.kernel.read_column(BlockColumn::FirstSlip, 0, &mut times);
+        self.kernel
+            .read_column(f64::NAN, BlockColumn::FirstSlip, 0, &mut times);
         times
     }
 

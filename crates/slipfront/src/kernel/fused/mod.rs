@@ -20,8 +20,8 @@ use std::sync::atomic::AtomicU32;
 use fearless_simd::Level;
 use slipfront_kernel::fixed_point::{FixedPoint, join, split};
 use slipfront_kernel::{
-    Band, Integrator, LANES, LargestFactors, Layout, MotionBounds, NEVER, Quanta, Springs, SquareRoot, Step,
-    Sums, SweepConditions, TILE, Vectors, halo, measure_displacements,
+    Band, Integrator, LANES, LargestFactors, Layout, MotionBounds, NEVER, Quanta, Springs, Step, Sums,
+    SweepConditions, TILE, Vectors, halo, measure_displacements,
 };
 
 use self::neighbours::Neighbours;
@@ -35,6 +35,7 @@ use crate::kernel::bands::for_each_band;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::{Engine, TakeSliding};
 use crate::kernel::vectors;
+use crate::lattice::K_STRAIGHT;
 use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::parallel::*;
@@ -178,19 +179,14 @@ impl Fused {
             );
         };
         let mut kernel = Self::new(model, dt_star, None, threads, true, Arc::new(Alone));
-        BlockColumn::for_each_part(model.surface.n_blocks(), |column, first, values| {
+        let Ok(()) = BlockColumn::for_each_part::<Infallible>(model, |_, column, first, values| {
             lattice.read_column(column, first, values);
             kernel.set_column(column, first, values);
-            Ok::<_, Infallible>(())
-        })
-        .unwrap_or_else(|never| match never {});
-        let of_law = lattice.strength.iter().flat_map(|strength| &strength.columns);
-        for (column, values) in of_law.enumerate() {
-            kernel.set_memory(column, 0, values);
-        }
+            Ok(())
+        });
         let mut kernel = kernel.resumed();
         kernel.swept_step = Some(latest);
-        kernel.motion_bounds = MotionBounds::of_numbers(lattice.motion.bounds);
+        kernel.motion_bounds = MotionBounds::from_numbers(lattice.motion.bounds);
         kernel.totals.velocity_after = lattice.motion.velocity_after;
         kernel.stress_square_max = lattice.motion.stress_square_max;
         kernel
@@ -221,18 +217,11 @@ impl Fused {
         mut read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Self, E> {
         let mut kernel = Self::new(model, dt_star, None, threads, skips, communicator);
-        BlockColumn::for_each_part(model.surface.n_blocks(), |column, first, values| {
-            read(column as usize, first, values)?;
+        BlockColumn::for_each_part(model, |number, column, first, values| {
+            read(number, first, values)?;
             kernel.set_column(column, first, values);
             Ok(())
         })?;
-        for column in 0..model.n_memory_columns() {
-            BlockColumn::for_each_part_of_one(model.surface.n_blocks(), |first, values| {
-                read(BlockColumn::ALL.len() + column, first, values)?;
-                kernel.set_memory(column, first, values);
-                Ok(())
-            })?;
-        }
         Ok(Self {
             totals: checkpoint.totals,
             stress_square_max: checkpoint.stress_square_max,
@@ -246,13 +235,6 @@ impl Fused {
     pub(crate) fn set_column(&mut self, column: BlockColumn, first: usize, values: &[f64]) {
         for band in &mut self.bands {
             columns::set_column(band, &self.layout, self.dt_star, column, first, values);
-        }
-    }
-
-    /// Sets a column of the memory of the law of friction of the blocks from `first` on.
-    fn set_memory(&mut self, column: usize, first: usize, values: &[f64]) {
-        for band in &mut self.bands {
-            columns::set_memory(band, &self.layout, column, first, values);
         }
     }
 
@@ -318,15 +300,7 @@ impl Fused {
         let touched = self.touched.as_slice();
         let sweep = |band: &mut Band| {
             band.schedule(&schedule, touched);
-            slipfront_kernel::sweep(
-                level,
-                band,
-                springs,
-                (model.epsilon, model.springs),
-                step,
-                &quanta,
-                energies,
-            );
+            slipfront_kernel::sweep(level, band, springs, model.epsilon, step, &quanta, energies);
         };
         // Bands at the ends of the rank wait for the rows of other ranks. Blocks that move there are marked
         // when they are received, which affects tiles of these bands alone.
@@ -373,13 +347,12 @@ impl Fused {
             return;
         }
         let communicator = &*self.neighbours.communicator;
-        let mut speed = [self.motion_bounds.speed];
-        communicator.largest(&mut speed);
-        self.motion_bounds.speed = speed[0];
-        if speed[0] == 0.0 {
+        let speed = communicator.largest_of(self.motion_bounds.speed);
+        self.motion_bounds.speed = speed;
+        if speed == 0.0 {
             return;
         }
-        let fixed_point = FixedPoint::new(self.largest.drive_spring * speed[0]);
+        let fixed_point = FixedPoint::new(self.largest.drive_spring * speed);
         for axis in 0..2 {
             let mut sum = 0;
             for b in 0..self.layout.n_own_blocks() {
@@ -441,7 +414,7 @@ impl Fused {
         if !self.layout.has_ghosts() {
             return;
         }
-        for j in 0..self.layout.rows() {
+        for j in 0..self.layout.rows {
             for (ghost, copied) in self.layout.ghosts_of_row(j) {
                 let (from, at) = self.locate(copied);
                 let band = &self.bands[from];
@@ -506,7 +479,7 @@ impl Fused {
         }
         Some(StoredEnergy {
             kinetic: 0.25 * quanta.motion_square.value(sums.velocity_squares),
-            lattice: quanta.lattice_energy.value(sums.lattice_energy) / (2.0 * self.largest.springs.straight),
+            lattice: quanta.lattice_energy.value(sums.lattice_energy) / (2.0 * K_STRAIGHT),
             drive_springs: 0.5 * step.k_drive * stretch_square.max(0.0),
         })
     }
@@ -542,12 +515,10 @@ impl Engine for Fused {
     }
 
     fn block(&self, model: &Model, clock: &Clock, b: usize) -> Block {
-        let (band, k) = self.locate(self.layout.element_of(b));
-        let band = &self.bands[band];
-        let u = band.displacement.at(band.halo + k);
-        let force_drive = fields::drive_force(model, clock.drive_time_star(), b, u);
         let kinetic_force = self.kinetic_force(model, b);
-        fields::block(model, b, force_drive, kinetic_force, |b| self.motion(b))
+        fields::block(model, clock.drive_time_star(), b, kinetic_force, |b| {
+            self.motion(b)
+        })
     }
 
     fn read_rows(
@@ -558,11 +529,7 @@ impl Engine for Fused {
         stride: usize,
         write: &mut dyn FnMut(usize, usize, &[f32]),
     ) {
-        let root = SquareRoot {
-            epsilon: model.epsilon,
-            stiffness: model.springs,
-        };
-        let how = (self.level, properties::step(model, clock), root);
+        let how = (self.level, properties::step(model, clock));
         fields::read_rows(model, how, (field, stride), (&self.layout, &self.bands), write);
     }
 
@@ -599,23 +566,10 @@ impl Engine for Fused {
         [band.displacement.at(band.halo + k), band.velocity.at(k)]
     }
 
-    fn state(&self) -> State {
-        let mut state = State::at_rest(self.layout.n_own_blocks());
-        let columns = [
-            (BlockColumn::DisplacementX, &mut state.displacement.x),
-            (BlockColumn::DisplacementY, &mut state.displacement.y),
-            (BlockColumn::VelocityX, &mut state.velocity.x),
-            (BlockColumn::VelocityY, &mut state.velocity.y),
-        ];
-        for (column, values) in columns {
-            self.read_column(column, 0, values);
-        }
-        state
-    }
-
-    fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
+    fn read_column(&self, time_star: f64, column: BlockColumn, first: usize, values: &mut [f64]) {
+        let times = [self.dt_star, time_star];
         for band in &self.bands {
-            columns::read_column(band, &self.layout, self.dt_star, column, first, values);
+            columns::read_column(band, &self.layout, times, column, first, values);
         }
     }
 
@@ -624,7 +578,8 @@ impl Engine for Fused {
             (band.displacement, band.velocity) = (Vectors::default(), Vectors::default());
         }
         let mut first_slips = vec![0.0; self.layout.n_own_blocks()];
-        self.read_column(BlockColumn::FirstSlip, 0, &mut first_slips);
+        // Only the memory of a law depends on the present time.
+        self.read_column(f64::NAN, BlockColumn::FirstSlip, 0, &mut first_slips);
         first_slips
     }
 
@@ -643,20 +598,11 @@ impl Engine for Fused {
                 }
             }
         }
-        let mut square = [square];
-        self.neighbours.communicator.largest(&mut square);
-        let [square] = square;
-        square
+        self.neighbours.communicator.largest_of(square)
     }
 
     fn motion_bounds(&self) -> Option<MotionBounds> {
         Some(self.motion_bounds)
-    }
-
-    fn read_memory(&self, time_star: f64, column: usize, first: usize, values: &mut [f64]) {
-        for band in &self.bands {
-            columns::read_memory(band, &self.layout, time_star, column, first, values);
-        }
     }
 }
 

@@ -1,6 +1,5 @@
 //! The rows next to those of a rank, which other ranks hold.
 
-use std::fmt::{Debug, Formatter};
 use std::sync::Arc;
 
 use slipfront_kernel::Layout;
@@ -9,6 +8,7 @@ use crate::communicator::Communicator;
 
 /// Displacements of the row below the first row of this rank and of the row above the last, ghosts included;
 /// none beyond a free edge.
+#[derive(Debug)]
 pub(super) struct Neighbours {
     pub(super) communicator: Arc<dyn Communicator>,
     /// The first and the last row of this rank, which are sent to the ranks below and above.
@@ -74,16 +74,5 @@ impl Neighbours {
             _ => (above, (element as usize).checked_sub(layout.n_elements())?),
         };
         row.get(k).copied()
-    }
-}
-
-impl Debug for Neighbours {
-    fn fmt(&self, formatter: &mut Formatter) -> std::fmt::Result {
-        formatter
-            .debug_struct("Neighbours")
-            .field("rank", &self.communicator.rank())
-            .field("rows", &self.rows)
-            .field("moved", &self.moved)
-            .finish()
     }
 }

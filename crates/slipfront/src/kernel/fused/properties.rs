@@ -1,6 +1,8 @@
 //! Answers to the vector kernel about a model: the properties of its blocks, their largest factors, a step.
 
-use slipfront_kernel::{Blocks, ChangingLaw, FallWithSpeed, Integrator, LargestFactors, Properties, Step};
+use slipfront_kernel::{
+    Block, Blocks, ChangingLaw, FallWithSpeed, Integrator, LargestFactors, Properties, Step,
+};
 
 use crate::clock::Clock;
 use crate::communicator::Communicator;
@@ -16,45 +18,25 @@ pub(super) struct ModelBlocks<'a> {
 }
 
 impl Blocks for ModelBlocks<'_> {
-    fn exists(&self, block: usize) -> bool {
-        self.model.slider.exists(block)
-    }
-
-    fn is_textured(&self, block: usize) -> bool {
-        self.model.surface.textured[block]
-    }
-
-    fn static_limit(&self, block: usize) -> f64 {
-        self.model.surface.static_limit(block)
-    }
-
-    fn kinetic_force(&self, block: usize) -> f64 {
-        self.model.surface.kinetic_force(block)
-    }
-
-    fn normal_force(&self, block: usize) -> f64 {
-        self.model.surface.load(block)
-    }
-
-    fn mass(&self, block: usize) -> f64 {
-        self.model.slider.mass(block)
-    }
-
-    fn drive_spring(&self, block: usize) -> f64 {
-        self.model.slider.drive_spring(block)
-    }
-
-    fn relative_dead_load(&self, block: usize) -> f64 {
-        self.model.dead_load.relative(block)
+    fn block(&self, b: usize) -> Block {
+        let Model { slider, surface, .. } = self.model;
+        Block {
+            exists: slider.exists(b),
+            is_textured: surface.textured[b],
+            static_limit: surface.static_limit(b),
+            kinetic_force: surface.kinetic_force(b),
+            normal_force: surface.load(b),
+            mass: slider.mass(b),
+            drive_spring: slider.drive_spring(b),
+            relative_dead_load: self.model.dead_load.relative(b),
+            motion: self
+                .state
+                .map(|state| [state.displacement.at(b), state.velocity.at(b)]),
+        }
     }
 
     fn spring(&self, column_row: [usize; 2], offset: [isize; 2]) -> f64 {
         self.moduli.spring(column_row, offset)
-    }
-
-    fn motion(&self, block: usize) -> Option<[[f64; 2]; 2]> {
-        self.state
-            .map(|state| [state.displacement.at(block), state.velocity.at(block)])
     }
 }
 
@@ -83,7 +65,7 @@ fn changing_law(model: &Model) -> Option<ChangingLaw> {
             ratio: law.ratio,
             adhesion: model.surface.adhesion().of_kinetic,
         })),
-        (None, Some(law)) => Some(ChangingLaw::Slip(law.fall())),
+        (None, Some(law)) => Some(ChangingLaw::Slip(law)),
         (None, None) => None,
     }
 }
@@ -126,7 +108,6 @@ pub(crate) fn largest_factors(model: &Model, communicator: &dyn Communicator) ->
     communicator.largest(&mut found);
     let [modulus, drive_spring, mass, inverse_mass, load] = found;
     LargestFactors {
-        springs: model.springs,
         foundation: model
             .friction
             .interface()

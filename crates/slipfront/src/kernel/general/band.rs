@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use super::drive::DrivenBlocks;
 use super::rows::Rows;
-use super::springs::{damper_forces, lattice_forces, row_energies};
+use super::springs::{Damper, Spring, row_energies, sum_connections};
 use super::weighted::{WeightedScratch, add_weighted, dot_products};
+use crate::checkpoint::BlockColumn;
 use crate::clock::Clock;
-use crate::forces::{Forces, part, part_mut};
+use crate::forces::{Forces, part, part_mut, values_of, values_of_mut};
 use slipfront_kernel::Integrator;
 use slipfront_kernel::fixed_point::RunningSum;
 
@@ -55,30 +56,17 @@ pub(super) struct Summed<T> {
 }
 
 impl<T> From<[T; 12]> for Summed<T> {
-    fn from(
-        [
-            ux,
-            uy,
-            vx,
-            vy,
-            ax,
-            ay,
-            square,
-            friction,
-            viscous,
-            contact_0,
-            contact_1,
-            contact_2,
-        ]: [T; 12],
-    ) -> Self {
+    fn from(values: [T; 12]) -> Self {
+        let [ux, uy, vx, vy, ax, ay, others @ ..] = values;
+        let [velocity_square, friction_power, viscous_power, contact @ ..] = others;
         Self {
             displacement: [ux, uy],
             velocity: [vx, vy],
             velocity_after: [ax, ay],
-            velocity_square: square,
-            friction_power: friction,
-            viscous_power: viscous,
-            contact: [contact_0, contact_1, contact_2],
+            velocity_square,
+            friction_power,
+            viscous_power,
+            contact,
         }
     }
 }
@@ -138,7 +126,7 @@ impl Band {
         let rows = Rows::new(model);
         let zeros = || VectorField::zeros(n);
         let bonds = || [(); 4].map(|()| VectorField::zeros(rows.lattice.n_blocks()));
-        let (slider, first_block) = (&model.slider, model.lattice.blocks_of(&model.rows).start);
+        let (slider, first_block) = (&model.slider, model.first_block());
         let relative = || Bond::ALL.map(|bond| rows.springs_along(moduli, &bond));
         Self {
             dt_star,
@@ -153,7 +141,7 @@ impl Band {
             },
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
-            driven: DrivenBlocks::of(model),
+            driven: DrivenBlocks::new(model),
             contact: BandContact::new(&model.friction, &model.surface, &model.dead_load, first_block),
             relative_springs: (!slider.has_equal_springs()).then(relative),
             dampers: slider.is_viscous().then(|| Dampers {
@@ -172,14 +160,29 @@ impl Band {
         }
     }
 
-    /// Columns of a checkpoint in addition to those of every block, see [`Model::n_memory_columns`].
-    pub(super) fn memory(&self) -> Vec<&[f64]> {
-        self.contact.columns()
+    /// A column of a checkpoint. Velocities are those half a step before the present instant, which a resumed
+    /// run evaluates again.
+    pub(super) fn column(&self, column: BlockColumn) -> &[f64] {
+        match column {
+            BlockColumn::DisplacementX => &self.state.displacement.x,
+            BlockColumn::DisplacementY => &self.state.displacement.y,
+            BlockColumn::VelocityX => &self.forces.velocity.x,
+            BlockColumn::VelocityY => &self.forces.velocity.y,
+            BlockColumn::FirstSlip => &self.first_slip,
+            BlockColumn::Memory(number) => self.contact.columns().swap_remove(number),
+        }
     }
 
-    /// Columns of a checkpoint in addition to those of every block, to be filled.
-    pub(super) fn memory_mut(&mut self) -> Vec<&mut [f64]> {
-        self.contact.columns_mut()
+    /// A column of a checkpoint, to be filled before its instant is evaluated again.
+    pub(super) fn column_mut(&mut self, column: BlockColumn) -> &mut [f64] {
+        match column {
+            BlockColumn::DisplacementX => &mut self.state.displacement.x,
+            BlockColumn::DisplacementY => &mut self.state.displacement.y,
+            BlockColumn::VelocityX => &mut self.state.velocity.x,
+            BlockColumn::VelocityY => &mut self.state.velocity.y,
+            BlockColumn::FirstSlip => &mut self.first_slip,
+            BlockColumn::Memory(number) => self.contact.columns_mut().swap_remove(number),
+        }
     }
 
     /// Computes the values that follow from the memory of the law of friction, after a checkpoint has
@@ -335,17 +338,25 @@ impl Band {
         }
         let Forces { lattice, springs, .. } = &mut self.forces;
         let (rows, relative) = (&self.rows, self.relative_springs.as_ref());
-        let state = rows.state(&self.state);
+        let (
+            State {
+                displacement: u,
+                velocity: v,
+            },
+            epsilon,
+        ) = (rows.state(&self.state), model.epsilon);
         match body {
             Some(BodyForces { force, .. }) => {
                 for (own, force) in part_mut(lattice, blocks).into_iter().zip(force) {
                     own.copy_from_slice(&force[blocks.clone()]);
                 }
             }
-            None => lattice_forces(model, rows, blocks, state, relative, lattice, springs),
+            None => sum_connections(rows, blocks, &Spring { u, epsilon }, relative, lattice, springs),
         }
         if let Some(Dampers { force, bonds }) = &mut self.dampers {
-            damper_forces(model, rows, blocks, state, relative, force, bonds);
+            let time = model.slider.viscosity_time;
+            let damper = Damper { u, v, epsilon, time };
+            sum_connections(rows, blocks, &damper, relative, force, bonds);
             add_to(lattice, force, blocks);
         }
         // Chosen outside of the loop: equal masses share one integrator, without a division per block.
@@ -379,9 +390,9 @@ impl Band {
     #[inline(always)]
     fn count(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64) {
         let n = blocks.len();
-        let textured = &model.surface.textured[blocks.clone()][..n];
-        let slides = &self.forces.slides[blocks.clone()][..n];
-        let first_slip = &mut self.first_slip[blocks.clone()][..n];
+        let textured = values_of(&model.surface.textured, blocks);
+        let slides = values_of(&self.forces.slides, blocks);
+        let first_slip = values_of_mut(&mut self.first_slip, blocks);
         let (mut n_sliding, mut n_slipping) = (0_u32, 0_u32);
         for k in 0..n {
             n_sliding += u32::from(slides[k]);
@@ -445,8 +456,7 @@ impl Band {
             part(&self.forces.friction, blocks),
             part(&self.forces.lattice, blocks),
         );
-        let (fx, fy, lx, ly, squares) = (&fx[..n], &fy[..n], &lx[..n], &ly[..n], &mut squares[..n]);
-        let textured = &model.surface.textured[blocks.clone()][..n];
+        let (squares, textured) = (&mut squares[..n], values_of(&model.surface.textured, blocks));
         for k in 0..n {
             let (x, y) = (fx[k] + lx[k], fy[k] + ly[k]);
             squares[k] = if textured[k] { 0.0 } else { x * x + y * y };
@@ -472,7 +482,7 @@ fn mean<'a>([before, after]: [[&[f64]; 2]; 2], velocity: &'a mut VectorField, n:
 #[inline(always)]
 fn masses<'a>(model: &'a Model, blocks: &Range<usize>) -> Option<&'a [f64]> {
     let masses = model.slider.density.as_ref()?;
-    Some(&masses[blocks.clone()])
+    Some(values_of(masses, blocks))
 }
 
 #[inline(always)]

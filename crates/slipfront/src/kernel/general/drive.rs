@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::weighted::{WeightedScratch, add_weighted, dot_products};
 use crate::dead_load::DeadLoad;
-use crate::forces::{part, part_mut};
+use crate::forces::{part, part_mut, values_of};
 use crate::model::Model;
 use crate::vector_field::VectorField;
 use slipfront_kernel::fixed_point::RunningSum;
@@ -17,7 +17,7 @@ pub(super) struct DrivenBlocks {
 }
 
 impl DrivenBlocks {
-    pub(super) fn of(model: &Model) -> Self {
+    pub(super) fn new(model: &Model) -> Self {
         let lattice = &model.lattice;
         let direction = || {
             let blocks = lattice.blocks_of(&model.rows);
@@ -43,7 +43,6 @@ impl DrivenBlocks {
     ) {
         let (k_drive, n) = (model.drive.k_drive, blocks.len());
         let ([fx, fy], [ux, uy]) = (part_mut(force, blocks), part(u, blocks));
-        let (fx, fy, ux, uy) = (&mut fx[..n], &mut fy[..n], &ux[..n], &uy[..n]);
         // The cases are distinguished outside of the loops, which then have no branches and are vectorised.
         match (&self.direction, mean) {
             (None, Some([ux, uy])) => {
@@ -61,7 +60,6 @@ impl DrivenBlocks {
             (Some(direction), _) => {
                 let path = model.drive.path(drive_time_star);
                 let [gx, gy] = part(direction, blocks);
-                let (gx, gy) = (&gx[..n], &gy[..n]);
                 for k in 0..n {
                     fx[k] = k_drive * (path * gx[k] - ux[k]);
                     fy[k] = k_drive * (path * gy[k] - uy[k]);
@@ -69,7 +67,6 @@ impl DrivenBlocks {
             }
         }
         if let Some(relative) = relative(model, blocks) {
-            let relative = &relative[..n];
             for k in 0..n {
                 fx[k] *= relative[k];
                 fy[k] *= relative[k];
@@ -92,7 +89,7 @@ impl DrivenBlocks {
         scratch: &mut WeightedScratch,
     ) {
         let ([ux, uy], n) = (part(u, blocks), blocks.len());
-        let (ux, uy, squares) = (&ux[..n], &uy[..n], &mut scratch.terms[..n]);
+        let squares = &mut scratch.terms[..n];
         match (&self.direction, mean) {
             (None, Some([ux, uy])) => {
                 let [x, y] = model.drive.position(drive_time_star);
@@ -109,7 +106,6 @@ impl DrivenBlocks {
             (Some(direction), _) => {
                 let path = model.drive.path(drive_time_star);
                 let [gx, gy] = part(direction, blocks);
-                let (gx, gy) = (&gx[..n], &gy[..n]);
                 for k in 0..n {
                     let (x, y) = (path * gx[k] - ux[k], path * gy[k] - uy[k]);
                     squares[k] = x * x + y * y;
@@ -140,7 +136,7 @@ impl DrivenBlocks {
                 let ([gx, gy], terms) = (part(direction, blocks), &mut scratch.terms[..n]);
                 dot_products([gx, gy], [x, y], terms);
                 add_weighted(along, terms, relative, &mut scratch.products);
-                let (gx, gy, x, y) = (&gx[..n], &gy[..n], &x[..n], &y[..n]);
+                let (x, y) = (&x[..n], &y[..n]);
                 for k in 0..n {
                     terms[k] = gx[k] * y[k] - gy[k] * x[k];
                 }
@@ -157,7 +153,7 @@ fn add_dead_load(model: &Model, blocks: &Range<usize>, [fx, fy]: [&mut [f64]; 2]
     let n = blocks.len();
     let (fx, fy) = (&mut fx[..n], &mut fy[..n]);
     if let Some(field) = field {
-        let relative = &field.relative[blocks.clone()][..n];
+        let relative = values_of(&field.relative, blocks);
         for k in 0..n {
             fx[k] += relative[k] * x;
             fy[k] += relative[k] * y;
@@ -177,5 +173,5 @@ fn add_dead_load(model: &Model, blocks: &Range<usize>, [fx, fy]: [&mut [f64]; 2]
 #[inline(always)]
 fn relative<'a>(model: &'a Model, blocks: &Range<usize>) -> Option<&'a [f64]> {
     let springs = model.slider.drive_springs.as_ref()?;
-    Some(&springs.relative[blocks.clone()])
+    Some(values_of(&springs.relative, blocks))
 }

@@ -215,59 +215,25 @@ impl General {
         ranks: Arc<dyn Communicator>,
         mut read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Self, E> {
-        let n = model.surface.n_blocks();
         let mut kernel = Self {
             stress_square_before: checkpoint.stress_square_max,
             ..Self::new(model, dt_star, None, threads, ranks)
         };
-        BlockColumn::for_each_part(n, |column, first, values| {
-            read(column as usize, first, values)?;
-            kernel.write(
-                first,
-                values,
-                |Band {
-                     state, first_slip, ..
-                 }| match column {
-                    BlockColumn::DisplacementX => &mut state.displacement.x,
-                    BlockColumn::DisplacementY => &mut state.displacement.y,
-                    BlockColumn::VelocityX => &mut state.velocity.x,
-                    BlockColumn::VelocityY => &mut state.velocity.y,
-                    BlockColumn::FirstSlip => first_slip,
-                },
-            );
+        BlockColumn::for_each_part(model, |number, column, first, values| {
+            read(number, first, values)?;
+            for one in &mut kernel.bands {
+                if let Some([own, of_values]) = one.common(first, values.len()) {
+                    one.band.column_mut(column)[own].copy_from_slice(&values[of_values]);
+                }
+            }
             Ok(())
         })?;
-        for column in 0..model.n_memory_columns() {
-            BlockColumn::for_each_part_of_one(n, |first, values| {
-                read(BlockColumn::ALL.len() + column, first, values)?;
-                kernel.write(first, values, |band| band.memory_mut().swap_remove(column));
-                Ok(())
-            })?;
-        }
         for one in &mut kernel.bands {
             let (model, band) = one.with_model(model);
             band.resume(model);
         }
         kernel.step(model, &checkpoint.clock(dt_star), false);
         Ok(kernel)
-    }
-
-    /// Sets an array of the blocks from `first` on to these values.
-    fn write(&mut self, first: usize, values: &[f64], array: impl Fn(&mut Band) -> &mut [f64]) {
-        for one in &mut self.bands {
-            if let Some([own, of_values]) = one.common(first, values.len()) {
-                array(&mut one.band)[own].copy_from_slice(&values[of_values]);
-            }
-        }
-    }
-
-    /// Reads an array for the blocks from `first` on.
-    fn read(&self, first: usize, values: &mut [f64], array: impl Fn(&Band) -> &[f64]) {
-        for one in &self.bands {
-            if let Some([own, of_values]) = one.common(first, values.len()) {
-                values[of_values].copy_from_slice(&array(&one.band)[own]);
-            }
-        }
     }
 
     /// The band of block `b`, and the number of the block in it.
@@ -402,7 +368,7 @@ impl Engine for General {
         let [n_sliding, n_slipping] = counts.map(|count| count as usize);
         // Subtracted from 0, not negated: without dampers negation would give -0.
         self.viscous_power = 0.0 - found.viscous_power;
-        self.contact_totals = ContactTotals::of(found.contact, &model.friction, &model.surface);
+        self.contact_totals = ContactTotals::from_sums(found.contact, &model.friction, &model.surface);
         let stored_energy = energies.then(|| self.stored_energy(model, clock.drive_time_star()));
         self.bands.iter_mut().for_each(|one| one.band.end_step());
         Totals {
@@ -452,9 +418,8 @@ impl Engine for General {
     }
 
     fn count_in_contact(&self, model: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]) {
-        let first = model.lattice.blocks_of(&model.rows).start;
         let slides = self.bands.iter().flat_map(|one| &one.band.forces.slides);
-        for (b, (slides, textured)) in (first..).zip(slides.zip(&model.surface.textured)) {
+        for (b, (slides, textured)) in (model.first_block()..).zip(slides.zip(&model.surface.textured)) {
             if *slides == sliding && !textured {
                 let (i, j) = model.lattice.column_row(b);
                 counts[bins.bin(i, j)] += 1;
@@ -474,24 +439,12 @@ impl Engine for General {
         [state.displacement.at(b), state.velocity.at(b)]
     }
 
-    fn state(&self) -> State {
-        let mut state = State::at_rest(self.bands.last().map_or(0, |one| one.blocks.end));
-        self.read(0, &mut state.displacement.x, |band| &band.state.displacement.x);
-        self.read(0, &mut state.displacement.y, |band| &band.state.displacement.y);
-        self.read(0, &mut state.velocity.x, |band| &band.state.velocity.x);
-        self.read(0, &mut state.velocity.y, |band| &band.state.velocity.y);
-        state
-    }
-
-    fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
-        self.read(first, values, |band| match column {
-            BlockColumn::DisplacementX => &band.state.displacement.x,
-            BlockColumn::DisplacementY => &band.state.displacement.y,
-            // Velocity half a step before the present instant, which a resumed run evaluates again.
-            BlockColumn::VelocityX => &band.forces.velocity.x,
-            BlockColumn::VelocityY => &band.forces.velocity.y,
-            BlockColumn::FirstSlip => &band.first_slip,
-        });
+    fn read_column(&self, _: f64, column: BlockColumn, first: usize, values: &mut [f64]) {
+        for one in &self.bands {
+            if let Some([own, of_values]) = one.common(first, values.len()) {
+                values[of_values].copy_from_slice(&one.band.column(column)[own]);
+            }
+        }
     }
 
     fn into_first_slips(self: Box<Self>) -> Vec<f64> {
@@ -501,9 +454,8 @@ impl Engine for General {
 
     fn stress_square_max(&self, _: &Model, _: &Clock) -> f64 {
         let squares = self.bands.iter().map(|one| one.band.stress_square_max);
-        let mut largest = [squares.fold(self.stress_square_before, f64::max)];
-        self.ranks.largest(&mut largest);
-        largest[0]
+        self.ranks
+            .largest_of(squares.fold(self.stress_square_before, f64::max))
     }
 
     fn speed_square_max(&self) -> f64 {
@@ -521,10 +473,6 @@ impl Engine for General {
 
     fn contact_totals(&self, _: &Model) -> ContactTotals {
         self.contact_totals
-    }
-
-    fn read_memory(&self, _: f64, column: usize, first: usize, values: &mut [f64]) {
-        self.read(first, values, |band| band.memory().swap_remove(column));
     }
 }
 

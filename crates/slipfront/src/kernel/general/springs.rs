@@ -4,86 +4,43 @@ use std::ops::Range;
 
 use super::rows::Rows;
 use crate::forces::{part, part_mut};
-use crate::lattice::{Bond, Edges, Lattice, SpringStiffness};
+use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Model;
-use crate::state::State;
 use crate::vector_field::VectorField;
 use slipfront_kernel::fixed_point;
 
-/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, with every spring computed once.
-/// Must be called for earlier blocks first. `relative`: stiffness of each spring over that of its bond, for a
-/// heterogeneous slider.
-#[inline(always)]
-pub(super) fn lattice_forces(
-    model: &Model,
-    rows: &Rows,
-    blocks: &Range<usize>,
-    state: &State,
-    relative: Option<&[Vec<f64>; 4]>,
-    force: &mut VectorField,
-    springs: &mut [VectorField; 4],
-) {
-    let spring = Spring {
-        u: &state.displacement,
-        epsilon: model.epsilon,
-    };
-    sum_all(rows, blocks, (&spring, model.springs), relative, force, springs);
-}
-
-/// Forces of dampers in parallel with all springs (Kelvin-Voigt),
-/// `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`, with the velocities half a step before. Arguments as
-/// for [`lattice_forces`].
-#[inline(always)]
-pub(super) fn damper_forces(
-    model: &Model,
-    rows: &Rows,
-    blocks: &Range<usize>,
-    state: &State,
-    relative: Option<&[Vec<f64>; 4]>,
-    force: &mut VectorField,
-    dampers: &mut [VectorField; 4],
-) {
-    let damper = Damper {
-        u: &state.displacement,
-        v: &state.velocity,
-        epsilon: model.epsilon,
-        time: model.slider.viscosity_time,
-    };
-    sum_all(rows, blocks, (&damper, model.springs), relative, force, dampers);
-}
-
 /// A connection between a block and its neighbour along a bond.
-trait Connection {
-    /// The force on a block from its neighbour.
-    fn one(&self, bond: &Bond, b: usize, other: usize) -> [f64; 2];
-
+pub(super) trait Connection {
     /// The forces on consecutive blocks from their neighbours, which are all the same distance away in
     /// memory.
-    fn many(&self, bond: &Bond, blocks: &Range<usize>, neighbours: &Range<usize>, force: [&mut [f64]; 2]);
+    fn forces(&self, bond: &Bond, blocks: &Range<usize>, neighbours: &Range<usize>, force: [&mut [f64]; 2]);
 }
 
-/// A spring, given displacements.
-struct Spring<'a> {
-    u: &'a VectorField,
-    epsilon: f64,
+/// A spring, given displacements (Eq. 3): `k_ij (r_ij - d_ij) e_ij`.
+pub(super) struct Spring<'a> {
+    pub(super) u: &'a VectorField,
+    pub(super) epsilon: f64,
 }
 
-/// A damper in parallel with a spring, given displacements and velocities.
-struct Damper<'a> {
-    u: &'a VectorField,
-    v: &'a VectorField,
-    epsilon: f64,
-    time: f64,
+/// A damper in parallel with a spring (Kelvin-Voigt), `tau_v k_ij (e_ij . (v_j - v_i)) e_ij`, given
+/// displacements and the velocities half a step before.
+pub(super) struct Damper<'a> {
+    pub(super) u: &'a VectorField,
+    pub(super) v: &'a VectorField,
+    pub(super) epsilon: f64,
+    /// The time `tau_v`.
+    pub(super) time: f64,
 }
 
 impl Connection for Spring<'_> {
     #[inline(always)]
-    fn one(&self, bond: &Bond, b: usize, other: usize) -> [f64; 2] {
-        bond.force(difference(self.u, b, other), self.epsilon)
-    }
-
-    #[inline(always)]
-    fn many(&self, bond: &Bond, blocks: &Range<usize>, neighbours: &Range<usize>, [fx, fy]: [&mut [f64]; 2]) {
+    fn forces(
+        &self,
+        bond: &Bond,
+        blocks: &Range<usize>,
+        neighbours: &Range<usize>,
+        [fx, fy]: [&mut [f64]; 2],
+    ) {
         let n = fx.len();
         let ([ux, uy], [next_ux, next_uy]) = (part(self.u, blocks), part(self.u, neighbours));
         let (ux, uy, next_ux, next_uy, fy) = (&ux[..n], &uy[..n], &next_ux[..n], &next_uy[..n], &mut fy[..n]);
@@ -93,22 +50,15 @@ impl Connection for Spring<'_> {
     }
 }
 
-impl Damper<'_> {
-    #[inline(always)]
-    fn force(&self, bond: &Bond, e: [f64; 2], w: [f64; 2]) -> [f64; 2] {
-        let [x, y] = bond.damper_force(e, w, self.epsilon);
-        [self.time * x, self.time * y]
-    }
-}
-
 impl Connection for Damper<'_> {
     #[inline(always)]
-    fn one(&self, bond: &Bond, b: usize, other: usize) -> [f64; 2] {
-        self.force(bond, difference(self.u, b, other), difference(self.v, b, other))
-    }
-
-    #[inline(always)]
-    fn many(&self, bond: &Bond, blocks: &Range<usize>, neighbours: &Range<usize>, [fx, fy]: [&mut [f64]; 2]) {
+    fn forces(
+        &self,
+        bond: &Bond,
+        blocks: &Range<usize>,
+        neighbours: &Range<usize>,
+        [fx, fy]: [&mut [f64]; 2],
+    ) {
         let n = fx.len();
         let ([ux, uy], [next_ux, next_uy]) = (part(self.u, blocks), part(self.u, neighbours));
         let ([vx, vy], [next_vx, next_vy]) = (part(self.v, blocks), part(self.v, neighbours));
@@ -117,7 +67,8 @@ impl Connection for Damper<'_> {
         for k in 0..n {
             let e = [next_ux[k] - ux[k], next_uy[k] - uy[k]];
             let w = [next_vx[k] - vx[k], next_vy[k] - vy[k]];
-            [fx[k], fy[k]] = self.force(bond, e, w);
+            let [x, y] = bond.damper_force(e, w, self.epsilon);
+            [fx[k], fy[k]] = [self.time * x, self.time * y];
         }
     }
 }
@@ -127,13 +78,14 @@ fn difference(field: &VectorField, b: usize, other: usize) -> [f64; 2] {
     [field.x[other] - field.x[b], field.y[other] - field.y[b]]
 }
 
-/// Sums the forces along the bonds of some blocks, times `relative`. Forces along the bonds of the blocks
-/// before must be known.
+/// Sums the forces of the connections of some blocks with their eight neighbours, every connection computed
+/// once, times `relative`: stiffness of each spring over that of its bond, for a heterogeneous slider. Forces
+/// along the `bonds` of the blocks before must be known.
 #[inline(always)]
-fn sum_all(
+pub(super) fn sum_connections(
     rows: &Rows,
     blocks: &Range<usize>,
-    (connection, stiffness): (&impl Connection, SpringStiffness),
+    connection: &impl Connection,
     relative: Option<&[Vec<f64>; 4]>,
     force: &mut VectorField,
     bonds: &mut [VectorField; 4],
@@ -145,13 +97,7 @@ fn sum_all(
     let behind = is_first.then(|| rows.behind());
     for blocks in behind.iter().chain([blocks]) {
         for (number, along) in bonds.iter_mut().enumerate() {
-            along_bond(
-                lattice,
-                blocks,
-                &stiffness.bond(Bond::ALL[number]),
-                connection,
-                along,
-            );
+            along_bond(lattice, blocks, &Bond::ALL[number], connection, along);
             if let Some(relative) = relative {
                 let relative = &relative[number][blocks.clone()];
                 for component in part_mut(along, blocks) {
@@ -196,7 +142,7 @@ fn along_bond(
     let inside = between(blocks, blocks.start, n.saturating_sub(shift));
     let neighbours = inside.start + shift..inside.end + shift;
     if !inside.is_empty() {
-        connection.many(bond, &inside, &neighbours, part_mut(force, &inside));
+        connection.forces(bond, &inside, &neighbours, part_mut(force, &inside));
     }
     let column = match bond.offset[0] {
         1 => Some(lattice.nx - 1),
@@ -204,40 +150,34 @@ fn along_bond(
         _ => None,
     };
     if let Some(i) = column {
-        replace(lattice, 0, in_column(lattice, blocks, i), bond, connection, force);
+        replace(lattice, in_column(lattice, blocks, i), bond, connection, force);
     }
     // Beyond a free edge there is no neighbour: the forces are zero there from the beginning, and no loop
     // overwrites them.
     if bond.offset[1] == 1 && lattice.edges[1] == Edges::Periodic {
         let top = between(blocks, lattice.block(0, lattice.ny - 1), n);
-        replace(lattice, 1, top, bond, connection, force);
+        replace(lattice, top, bond, connection, force);
     }
 }
 
-/// Forces along `bond` on blocks at the end of an axis.
+/// Forces along `bond` on blocks at the end of an axis. The loop over all rows used a block at the other end
+/// of a row as the neighbour, since it is the same distance away in memory.
 #[inline(always)]
 fn replace(
     lattice: &Lattice,
-    axis: usize,
     blocks: impl Iterator<Item = usize>,
     bond: &Bond,
     connection: &impl Connection,
     force: &mut VectorField,
 ) {
-    match lattice.edges[axis] {
-        // The loop over all rows used a block at the other end of a row as the neighbour, since it is the
-        // same distance away in memory.
-        Edges::Free => {
-            for b in blocks {
-                [force.x[b], force.y[b]] = [0.0, 0.0];
+    for b in blocks {
+        let (i, j) = lattice.column_row(b);
+        match lattice.neighbour(i, j, bond.offset) {
+            Some(other) => {
+                let force = part_mut(force, &(b..b + 1));
+                connection.forces(bond, &(b..b + 1), &(other..other + 1), force);
             }
-        }
-        Edges::Periodic => {
-            for b in blocks {
-                let (i, j) = lattice.column_row(b);
-                let other = lattice.neighbour(i, j, bond.offset);
-                [force.x[b], force.y[b]] = other.map_or([0.0, 0.0], |other| connection.one(bond, b, other));
-            }
+            None => [force.x[b], force.y[b]] = [0.0, 0.0],
         }
     }
 }
@@ -346,7 +286,7 @@ fn row_energy(
     (number, j): (usize, usize),
     row: &mut [f64],
 ) -> f64 {
-    let (lattice, bond) = (&rows.lattice, &model.springs.bond(Bond::ALL[number]));
+    let (lattice, bond) = (&rows.lattice, &Bond::ALL[number]);
     let epsilon = model.epsilon;
     // One block of the row may have its neighbour beyond the end of the row. The neighbours of all other
     // blocks are the same distance away.

@@ -73,7 +73,7 @@ impl Front {
     ///
     /// // A chain in which slip runs from the first block on, two units of time for each.
     /// let times: Vec<f64> = (0..20).map(|i| 2.0 * f64::from(i)).collect();
-    /// let front = Front::of(&Lattice::free(20, 1), &times, 20).unwrap();
+    /// let front = Front::find(&Lattice::free(20, 1), &times, 20).unwrap();
     /// assert_eq!((front.nucleations, front.speed.unwrap().median), (vec![0], 0.5));
     /// // Of 20 times 5 % lie before the 0.95th, counted from 0, and 95 % before the 18.05th.
     /// assert!((front.duration - 2.0 * (18.05 - 0.95)).abs() < 1e-12);
@@ -81,10 +81,10 @@ impl Front {
     ///
     /// # Panics
     /// If there is not one time per block.
-    pub fn of(lattice: &Lattice, times: &[f64], n_contact: usize) -> Option<Self> {
+    pub fn find(lattice: &Lattice, times: &[f64], n_contact: usize) -> Option<Self> {
         assert_eq!(times.len(), lattice.n_blocks(), "one time per block");
         let slipped = times.iter().copied().filter(|time| !time.is_nan()).collect();
-        let first_slips = Quantiles::of(slipped)?;
+        let first_slips = Quantiles::new(slipped)?;
         let least = n_contact
             .div_ceil(SITE_MIN_SHARE)
             .max(SITE_MIN_BLOCKS)
@@ -95,7 +95,7 @@ impl Front {
             (passages.n_windows > 0).then(|| passages.speeds.len() as f64 / passages.n_windows as f64);
         let is_front = share.is_some_and(|share| share >= LEAST_SHARE);
         Some(Self {
-            speed: Quantiles::of(passages.speeds).filter(|_| is_front),
+            speed: Quantiles::new(passages.speeds).filter(|_| is_front),
             share,
             nucleations,
             duration: first_slips.high - first_slips.low,
@@ -104,7 +104,7 @@ impl Front {
 }
 
 impl Quantiles {
-    fn of(mut values: Vec<f64>) -> Option<Self> {
+    fn new(mut values: Vec<f64>) -> Option<Self> {
         let last = values.len().checked_sub(1)?;
         let mut at = |share: f64| {
             let place = share * last as f64;

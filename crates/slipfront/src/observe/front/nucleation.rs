@@ -61,7 +61,7 @@ pub(super) fn nucleations(lattice: &Lattice, times: &[f64], least: usize) -> Vec
             }
         }
         for &(_, younger) in met.iter().filter(|(_, root)| *root != oldest_root) {
-            clusters.take_in(oldest_root, younger, times);
+            clusters.merge(oldest_root, younger, times);
         }
         clusters.add(block, oldest_root, times);
     }
@@ -109,7 +109,7 @@ impl Clusters {
         Some(block)
     }
 
-    fn take_in(&mut self, older: u32, younger: u32, times: &[f64]) {
+    fn merge(&mut self, older: u32, younger: u32, times: &[f64]) {
         let [to, from] = [older, younger].map(|root| root as usize);
         self.parent[from] = older;
         self.size[to] += self.size[from];

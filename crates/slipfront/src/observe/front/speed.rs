@@ -27,7 +27,7 @@ pub(super) struct Passages {
 
 /// The windows of all blocks through which a front passes.
 pub(super) fn passages(lattice: &Lattice, times: &[f64], nucleations: &[usize]) -> Passages {
-    let axes = [0, 1].map(|axis| WindowAxis::of(lattice, axis));
+    let axes = [0, 1].map(|axis| WindowAxis::new(lattice, axis));
     let mut is_left_out = vec![false; times.len()];
     for &block in nucleations {
         let (i, j) = lattice.column_row(block);
@@ -101,7 +101,7 @@ struct WindowAxis {
 }
 
 impl WindowAxis {
-    fn of(lattice: &Lattice, axis: usize) -> Self {
+    fn new(lattice: &Lattice, axis: usize) -> Self {
         let count = [lattice.nx, lattice.ny][axis];
         Self {
             count,

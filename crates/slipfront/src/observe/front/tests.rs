@@ -14,7 +14,7 @@ fn times_of(lattice: &Lattice, time: impl Fn(f64, f64) -> f64) -> Vec<f64> {
 }
 
 fn front(lattice: &Lattice, times: &[f64]) -> Front {
-    Front::of(lattice, times, lattice.n_blocks()).unwrap()
+    Front::find(lattice, times, lattice.n_blocks()).unwrap()
 }
 
 /// A plain generator of uniform numbers in [0, 1) (Knuth's MMIX constants).
@@ -27,7 +27,7 @@ fn uniform(state: &mut u64) -> f64 {
 
 #[test]
 fn quantiles_are_interpolated() {
-    let of = |values: &[f64]| Quantiles::of(values.to_vec());
+    let of = |values: &[f64]| Quantiles::new(values.to_vec());
     assert_eq!(of(&[]), None);
     let one = of(&[3.0]).unwrap();
     assert_eq!([one.low, one.median, one.high], [3.0; 3]);
@@ -120,7 +120,7 @@ fn noise_does_not_hide_the_speed() {
         1.0 / (gx * gx + gy * gy).sqrt()
     };
     let inner = (0..lattice.n_blocks() - 60).filter(|b| b % 60 < 59);
-    let of_neighbours = Quantiles::of(inner.map(difference).collect()).unwrap();
+    let of_neighbours = Quantiles::new(inner.map(difference).collect()).unwrap();
     assert!((of_neighbours.median - 1.0).abs() > 0.05, "{of_neighbours:?}");
     assert!(of_neighbours.high > 2.0, "{of_neighbours:?}");
 }
@@ -181,7 +181,7 @@ fn what_slips_at_once_has_no_site_and_no_speed() {
         };
         assert_eq!(front, expected);
     }
-    assert_eq!(Front::of(&Lattice::free(3, 3), &[f64::NAN; 9], 9), None);
+    assert_eq!(Front::find(&Lattice::free(3, 3), &[f64::NAN; 9], 9), None);
 
     // A column that slips at once becomes a site when the next one follows.
     let lattice = Lattice::free(20, 20);
@@ -263,7 +263,7 @@ fn cavities_are_left_out_and_part_the_slider() {
         }
     }
     let in_contact = times.iter().filter(|time| !time.is_nan()).count();
-    let front = Front::of(&lattice, &times, in_contact).unwrap();
+    let front = Front::find(&lattice, &times, in_contact).unwrap();
     let speed = front.speed.unwrap();
     assert!((speed.low / exact - 1.0).abs() < 1e-9 && (speed.high / exact - 1.0).abs() < 1e-9);
     assert_eq!(front.nucleations.len(), 1);
@@ -273,7 +273,7 @@ fn cavities_are_left_out_and_part_the_slider() {
     for j in 0..40 {
         times[lattice.block(20, j)] = f64::NAN;
     }
-    let front = Front::of(&lattice, &times, 39 * 40).unwrap();
+    let front = Front::find(&lattice, &times, 39 * 40).unwrap();
     assert_eq!(front.nucleations, [0, 21]);
 }
 
@@ -282,7 +282,7 @@ fn cavities_are_left_out_and_part_the_slider() {
 fn strips_between_grooves_have_no_planes() {
     let lattice = Lattice::free(40, 40);
     let times = times_of(&lattice, |x, y| if y % 3.0 == 0.0 { x } else { f64::NAN });
-    let front = Front::of(&lattice, &times, 14 * 40).unwrap();
+    let front = Front::find(&lattice, &times, 14 * 40).unwrap();
     assert_eq!((front.nucleations.len(), front.speed), (14, None));
 }
 
@@ -399,7 +399,7 @@ fn a_line_of_contacts_has_the_speed_of_a_chain() {
     );
     let along_y = times_of(&lattice, |x, y| if x == 39.0 { time(y) } else { f64::NAN });
     for times in [along_x, along_y] {
-        let of_line = Front::of(&lattice, &times, 30).unwrap();
+        let of_line = Front::find(&lattice, &times, 30).unwrap();
         assert_eq!((of_line.speed, of_line.share), (of_chain.speed, of_chain.share));
         assert_eq!(
             (of_line.nucleations.len(), of_line.duration),
